@@ -139,8 +139,11 @@ def install(app: FastAPI, routes: Sequence[APIRoute], page: Page) -> None:
     handler is for.
     """
 
-    def handle(request: Request, error: Exception) -> Response:
-        """The problem document of an error; of a wrong method with those that the path has."""
+    async def handle(request: Request, error: Exception) -> Response:
+        """The problem document of an error; of a wrong method with those that the path has.
+
+        Made here: another thread takes as long to begin.
+        """
         if isinstance(error, HTTPException) and error.status_code == 405:
             # the framework names the methods of the first route only
             found = [route for route in routes if route.path_regex.fullmatch(request.url.path)]

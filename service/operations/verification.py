@@ -138,6 +138,9 @@ def _check_part(connection: Connection, digest: str) -> bool:
     stored = content.get_part(connection, digest)
     if stored is None:
         raise ValueError("its definition is gone from the store; submit it again")
+    name, its_own = catalogue.name_of(connection, digest), read_json(stored.definition)["name"]
+    if name not in (None, its_own):
+        raise ValueError(f"it is called '{name}' in the store, and '{its_own}' in its document")
     made = part_anew(connection, digest)
     if is_left := _is_left(connection, stored):
         list_formulas(connection, digest)

@@ -33,7 +33,7 @@ DRAWN = {
 }
 router = APIRouter(include_in_schema=False)
 #: around what may be wider than the screen
-SCROLLS = '<div class="scroll" tabindex="0" role="group" aria-label="Table">'
+SCROLLS = '<div class="scroll text" tabindex="0" role="group" aria-label="Table">'
 
 
 @router.get("/docs")

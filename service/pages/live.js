@@ -41,15 +41,15 @@ async function act(button) {
   if (sure && !confirm(sure)) return;
   button.disabled = true;
   const options = {method, headers: {"Content-Type": "application/json"}, body: method === "POST" ? "{}" : undefined};
-  const answer = await fetch(address, options), json = answer.status === 204 ? {} : await answer.json();
-  button.disabled = false;
+  const asked = fetch(address, options).then(async answer => [answer, answer.status === 204 ? {} : await answer.json()]);
+  const [answer, json] = await asked.finally(() => { button.disabled = false; });
   if (!answer.ok) { told.textContent = json.detail; return; }
   const where = {job: "/jobs/" + json.id, tree: `/trees/${json.name}@${json.revision}`, jobs: "/jobs", here: location.href};
   location.assign(json.kind && json.id && to === "tree" ? "/jobs/" + json.id : where[to]);
 }
 document.addEventListener("click", event => {
   const button = event.target.closest("button[data-address]");
-  if (button) act(button).catch(error => { told.textContent = "no answer: " + error; });
+  if (button) act(button).catch(error => { told.textContent = "no answer: see whether the server runs, then try again"; });
 });
 if (live?.dataset.events && !isFinal) follow();
 else if (live?.dataset.running) setInterval(again, PAUSE);

@@ -129,7 +129,7 @@ def difference_page(kind: str, a: str, b: str, found: Mapping[str, Any]) -> byte
     return document(
         f"{a} and {b} - substructures",
         tag("h1", link(a, f"/{kind}/{a}"), " and ", link(b, f"/{kind}/{b}")),
-        tag("ul", [tag("li", words) for words in found["words"]]),
+        tag("ul", [tag("li", words) for words in found["words"]], class_="plain"),
         *([tag("h2", "Fields"), table(("place", "change"), fields)] if fields else []),
         *([tag("h2", "Formulas"), table(COLUMNS, quantities)] if quantities else []),
         tag("p", "Entry by entry: ", link("JSON", address)),

@@ -151,16 +151,20 @@ def _set_latest(connection: Connection, name: str, is_anew: bool = False) -> Non
     exchange(connection, name, None if is_anew else had, has or set())
 
 
+def name_of(connection: Connection, digest: str) -> str | None:
+    """What a part is called; None of one that a tree brought along."""
+    return connection.execute(_NAME_OF, {"of_digest": digest}).scalar()
+
+
 def show_again(connection: Connection, digest: str) -> None:
     """Let searches find what is stored of a part, where it is the latest version of its name."""
-    name = connection.execute(_NAME_OF, {"of_digest": digest}).scalar()
-    if name is not None:
+    if (name := name_of(connection, digest)) is not None:
         _set_latest(connection, name, is_anew=True)
 
 
 def wrong_latest(connection: Connection, digest: str) -> list[str]:
     """What searches read of a part, where it is the latest version of its name, and is not what is stored of it."""
-    name = connection.execute(_NAME_OF, {"of_digest": digest}).scalar()
+    name = name_of(connection, digest)
     latest = None if name is None else connection.execute(_SHOWN, {"of_name": name}).scalar()
     row = connection.execute(_OF_LATEST, {"of_name": name, "of_version": latest}).first()
     if row is None or row.digest != digest:

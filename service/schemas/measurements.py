@@ -10,6 +10,7 @@ from service.schemas.logs import Logged
 from service.schemas.measured import ACCELERATIONS, BY_NAME, COORDINATES, EFFORTS_OF_ACTUATORS, VELOCITIES
 from substructures.analysis.identification.fit import ERROR_LIMIT
 from substructures.documents import DocumentPart
+from substructures.documents.fields import NUMERIC
 
 
 class CurvatureRequest(DocumentPart):
@@ -37,21 +38,17 @@ class IdentificationRequest(ExcitationRequest):
 
     tau: Annotated[Any, EFFORTS_OF_ACTUATORS] = Field(None, description="forces of the actuators, as q; N m, N")
     known: bool = Field(True, description="the tree's springs, dampers, loads and armatures act and are known")
-    held_out: float = Field(
-        0, ge=0, lt=1, description="part of the samples, the last, that is predicted and not fitted"
+    held_out: Annotated[float, Field(ge=0, lt=1), NUMERIC] = Field(
+        0, description="part of the samples, the last, that is predicted and not fitted"
     )
     consistent: bool = Field(
         False, description="also inertia of every body that a mass distribution has, and new parts"
     )
-    prior_deviation: float = Field(
+    prior_deviation: Annotated[float, Field(gt=0, allow_inf_nan=False), NUMERIC] = Field(
         1,
-        gt=0,
-        allow_inf_nan=False,
         description="relative deviation of the inertia that the tree has, where consistent",
     )
-    error_limit: float = Field(
+    error_limit: Annotated[float, Field(gt=0, allow_inf_nan=False), NUMERIC] = Field(
         ERROR_LIMIT,
-        gt=0,
-        allow_inf_nan=False,
         description="part of the force of a joint that may be unexplained or uncertain in a right result",
     )

@@ -130,14 +130,12 @@ def _reach() -> str:
         w.copy(state, y, c["size"])
         for place in words.values():
             w.put(f"store i64 0, ptr {place}, align 8")
-        w.put("br label %try")
-        w.label("try")
-        w.put(f"store i64 0, ptr {words['accepted']}, align 8")
-        w.put("call void @advance(ptr %run)")
-        found = [w.do(f"load i64, ptr {words[name]}, align 8") for name in WAY[3:]]
-        may, runs = w.do(f"icmp slt i64 {found[0]}, %most"), w.do(f"icmp eq i64 {found[1]}, {RUNNING}")
-        w.put(f"br i1 {w.do(f'and i1 {may}, {runs}')}, label %try, label %tried")
-        w.label("tried")
+        with w.forever() as leave:
+            w.put(f"store i64 0, ptr {words['accepted']}, align 8")
+            w.put("call void @advance(ptr %run)")
+            found = [w.do(f"load i64, ptr {words[name]}, align 8") for name in WAY[3:]]
+            leave(w.do(f"icmp sge i64 {found[0]}, %most"))
+            leave(w.do(f"icmp ne i64 {found[1]}, {RUNNING}"))
         for k, word in enumerate(found, 3):
             value = w.do(f"sitofp i64 {word} to double")
             w.put(f"store double {value}, ptr {w.offset(row, k, 'double')}, align 8")

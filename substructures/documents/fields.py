@@ -166,6 +166,15 @@ def _real(value: Any) -> float:
     return number
 
 
+def _numeric(value: Any) -> Any:
+    """What may be a number; no text, no truth value, which pydantic would take for one."""
+    if isinstance(value, bool | str):
+        raise PydanticCustomError("number-expected", "a number is needed")
+    return value
+
+
+#: behind the bounds of a count or a number, ``Annotated[int, Field(ge=1), NUMERIC]``: schemas tell the bounds then
+NUMERIC = BeforeValidator(_numeric)
 #: a number that has no unit of its own
 PlainNumber = Annotated[int | Decimal | str, BeforeValidator(_plain_number), WithJsonSchema({"anyOf": _EITHER})]
 Number = Annotated[

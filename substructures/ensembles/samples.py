@@ -21,7 +21,7 @@ from pydantic_core import PydanticCustomError
 
 from substructures.array import Array
 from substructures.documents import DocumentPart
-from substructures.documents.fields import Real, unit_of
+from substructures.documents.fields import NUMERIC, Real, unit_of
 
 #: rows that may be drawn
 MOST_ROWS = 10**8
@@ -40,8 +40,8 @@ class Distribution(DocumentPart):
 
     values: Values | None = None
     uniform: tuple[Real, Real] | None = None
-    normal: tuple[Real, Annotated[float, Field(ge=0)]] | None = None
-    count: Annotated[int, Field(ge=1, le=MOST_ROWS)] | None = None
+    normal: tuple[Real, Annotated[float, Field(ge=0), NUMERIC]] | None = None
+    count: Annotated[int, Field(ge=1, le=MOST_ROWS), NUMERIC] | None = None
     unit: Annotated[str, Field(max_length=64)] = ""
 
     @field_validator("unit")
@@ -80,8 +80,8 @@ class Samples(DocumentPart):
     """
 
     method: Literal["grid", "list", "random", "sobol", "latin-hypercube"] = "grid"
-    count: Annotated[int, Field(ge=1, le=MOST_ROWS)] | None = None
-    seed: Annotated[int, Field(ge=0, lt=2**53)] = 0
+    count: Annotated[int, Field(ge=1, le=MOST_ROWS), NUMERIC] | None = None
+    seed: Annotated[int, Field(ge=0, lt=2**53), NUMERIC] = 0
     of: dict[str, Distribution] = Field(min_length=1, max_length=1000)
 
     @model_validator(mode="after")

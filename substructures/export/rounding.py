@@ -9,15 +9,15 @@ of the error with which it is computed. With the unit roundoff u and operands x,
 (N. J. Higham, Accuracy and Stability of Numerical Algorithms, 2nd ed., section 3.3). Functions of the library are taken
 to be within one unit in the last place. Arguments count as given; default values of parameters are rounded. Where a
 divisor could vanish, as far as its ball tells, what it depends on is halved again and again: so accelerations have a
-bound where the ranges are no wider than that takes.
+bound where the ranges are no wider than that takes. What has none in the middle of the ranges has none at all.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping, Sequence
 from fractions import Fraction
 from math import inf, isfinite
+from typing import NamedTuple
 
 import flint
 
@@ -37,23 +37,23 @@ Ranges = Mapping[str, tuple[float, float]]
 _Box = Mapping[str, "_Rounded"]
 
 
-@dataclass(frozen=True)
-class _Rounded:
-    """``exact``: ball of the exact values; ``error``: bound of the distance of what is computed."""
+class _Rounded(NamedTuple):
+    """``exact``: ball of the exact values, ``size`` at most; ``error``: bound of the distance of what is computed."""
 
     exact: flint.arb
     error: float
+    size: float
+
+    @classmethod
+    def of(cls, exact: flint.arb, error: float) -> _Rounded:
+        """Of a ball."""
+        return cls(exact, error, float(exact.abs_upper()))
 
     @property
     def width(self) -> float:
         """Half of the range of the exact values; zero where there is none."""
         found = float(self.exact.rad())
         return found if isfinite(found) else 0.0
-
-    @property
-    def size(self) -> float:
-        """Of the exact values at most."""
-        return float(abs(self.exact).upper())
 
 
 def read_ranges(text: str, interface: Interface) -> Ranges:
@@ -86,15 +86,13 @@ def bounds(function: Function, ranges: Ranges) -> dict[str, tuple[float, float]]
     """
     program, whole = function.program, _box(function.interface, ranges)
     cut = [name for name in _in_divisors(program) if name in whole and whole[name].width > 0]
+    middle = _outputs(program, {name: _Rounded.of(x.exact.mid(), x.error) for name, x in whole.items()}) if cut else {}
+    bounded = [name for name, (error, _) in middle.items() if isfinite(error)]
     boxes, left, found = [whole], WORK // max(1, len(program)), dict.fromkeys(program.outputs, (0.0, 0.0))
     while boxes:
         box = boxes.pop()
-        results = _operations(program, box)
-        some = {
-            name: (max((results[e].error for e in output.entries), default=0.0), _largest(results, output.entries))
-            for name, output in program.outputs.items()
-        }
-        if left > 0 and cut and not all(isfinite(error) for error, _ in some.values()):
+        some = _outputs(program, box)
+        if left > 0 and not all(isfinite(some[name][0]) for name in bounded):
             boxes += _halves(box, max(cut, key=lambda name: box[name].width))
             left -= 2
         else:
@@ -104,8 +102,14 @@ def bounds(function: Function, ranges: Ranges) -> dict[str, tuple[float, float]]
     return found
 
 
-def _largest(results: Mapping[int, _Rounded], entries: Iterable[int]) -> float:
-    return max((results[entry].size for entry in entries), default=0.0)
+def _outputs(program: Program, box: _Box) -> dict[str, tuple[float, float]]:
+    """As :func:`bounds`, of one box."""
+    results = _operations(program, box)
+    return {name: _largest([results[entry] for entry in output.entries]) for name, output in program.outputs.items()}
+
+
+def _largest(elements: Sequence[_Rounded]) -> tuple[float, float]:
+    return max((x.error for x in elements), default=0.0), max((x.size for x in elements), default=0.0)
 
 
 def _in_divisors(program: Program) -> list[str]:
@@ -133,7 +137,7 @@ def _halves(box: _Box, name: str) -> list[_Box]:
     whole = box[name].exact
     quarter = flint.arb(whole.rad()) / 2
     parts = [flint.arb(whole.mid() + sign * quarter, quarter) for sign in (-1, 1)]
-    return [{**box, name: _Rounded(part, box[name].error)} for part in parts]
+    return [{**box, name: _Rounded.of(part, box[name].error)} for part in parts]
 
 
 def _box(interface: Interface, ranges: Ranges) -> _Box:
@@ -143,17 +147,17 @@ def _box(interface: Interface, ranges: Ranges) -> _Box:
         for i, (name, unit) in enumerate(zip(vector.names, vector.units, strict=True)):
             given = ranges.get(name, ranges.get(vector.symbol))
             if given is not None:
-                known[name] = _Rounded(flint.arb(given[0]).union(flint.arb(given[1])), 0.0)
+                known[name] = _Rounded.of(flint.arb(given[0]).union(flint.arb(given[1])), 0.0)
             elif vector.symbol == "p":
                 x = vector.defaults[i] if vector.defaults else inf
-                known[name] = _Rounded(flint.arb(x), abs(x) * UNIT) if isfinite(x) else _UNKNOWN
+                known[name] = _Rounded.of(flint.arb(x), abs(x) * UNIT) if isfinite(x) else _UNKNOWN
             else:
                 largest = flint.arb.pi() if unit == "rad" else flint.arb(1)
-                known[name] = _Rounded(flint.arb(0, largest), 0.0)
+                known[name] = _Rounded.of(flint.arb(0, largest), 0.0)
     return known
 
 
-_UNKNOWN = _Rounded(flint.arb("nan"), inf)
+_UNKNOWN = _Rounded(flint.arb("nan"), inf, inf)
 
 
 def _operations(program: Program, box: _Box) -> dict[int, _Rounded]:
@@ -172,24 +176,24 @@ def _operations(program: Program, box: _Box) -> dict[int, _Rounded]:
             results[i] = _applied(op, results[rest[0]])
         else:  # corners and jumps
             results[i] = _UNKNOWN
-        if not (results[i].exact.is_finite() and isfinite(results[i].error)):
-            results[i] = _UNKNOWN
     return results
 
 
 def _constant(op: str, rest: list[object]) -> _Rounded:
     if op == "pi":
-        return _Rounded(flint.arb.pi(), 4 * UNIT)
+        return _Rounded.of(flint.arb.pi(), 4 * UNIT)
     number = Fraction(int(str(rest[0])), int(str(rest[1])) if op == "rat" else 1)
     exact = flint.arb(to_fmpq(number))
     is_float = number.denominator == 1 and abs(number.numerator) <= 2**24
-    return _Rounded(exact, 0.0 if is_float else float(abs(exact).upper()) * UNIT)
+    size = float(exact.abs_upper())
+    return _Rounded(exact, 0.0 if is_float else size * UNIT, size)
 
 
 def _rounded(exact: flint.arb, error: float, units: int = 1) -> _Rounded:
     """With the rounding of the result itself; what is added here is large beside the roundings of these sums."""
-    size = float(abs(exact).upper())
-    return _Rounded(exact, (error + units * UNIT * (size + error) + SMALLEST) * (1 + 1e-12))
+    size = float(exact.abs_upper())
+    whole = (error + units * UNIT * (size + error) + SMALLEST) * (1 + 1e-12)
+    return _Rounded(exact, whole, size) if whole < inf else _UNKNOWN
 
 
 def _sum(x: _Rounded, y: _Rounded) -> _Rounded:
@@ -205,15 +209,16 @@ def _product(x: _Rounded, y: _Rounded) -> _Rounded:
 
 
 def _quotient(x: _Rounded, y: _Rounded) -> _Rounded:
-    exact, least = x.exact / y.exact, float(abs(y.exact).lower()) - y.error
-    if not exact.is_finite() or least <= 0:
+    least = float(y.exact.abs_lower()) - y.error
+    if not least > 0:
         return _UNKNOWN
-    return _rounded(exact, (x.error + float(abs(exact).upper()) * y.error) / least)
+    exact = x.exact / y.exact
+    return _rounded(exact, (x.error + float(exact.abs_upper()) * y.error) / least)
 
 
 def _power(x: _Rounded, n: int) -> _Rounded:
     if n < 0:
-        return _quotient(_Rounded(flint.arb(1), 0.0), _power(x, -n))
+        return _quotient(_Rounded.of(flint.arb(1), 0.0), _power(x, -n))
     error = abs(n) * (x.size + x.error) ** (n - 1) * x.error if n else 0.0
     return _rounded(x.exact**n, error, 2)
 
@@ -221,8 +226,7 @@ def _power(x: _Rounded, n: int) -> _Rounded:
 def _applied(name: str, x: _Rounded) -> _Rounded:
     function, slope = _FUNCTIONS[name]
     wide = x.exact + flint.arb(0, x.error) if x.error else x.exact
-    steep = abs(slope(wide)).upper()
-    return _rounded(function(x.exact), float(steep) * x.error, 2) if steep.is_finite() else _UNKNOWN
+    return _rounded(function(x.exact), float(slope(wide).abs_upper()) * x.error, 2)
 
 
 _ARITHMETIC: Mapping[str, Callable[..., _Rounded]] = {
@@ -230,8 +234,8 @@ _ARITHMETIC: Mapping[str, Callable[..., _Rounded]] = {
     "sub": _difference,
     "mul": _product,
     "div": _quotient,
-    "neg": lambda x: _Rounded(-x.exact, x.error),
-    "abs": lambda x: _Rounded(abs(x.exact), x.error),
+    "neg": lambda x: _Rounded(-x.exact, x.error, x.size),
+    "abs": lambda x: _Rounded(abs(x.exact), x.error, x.size),
 }
 _FUNCTIONS: Mapping[str, tuple[Callable[[flint.arb], flint.arb], Callable[[flint.arb], flint.arb]]] = {
     "sin": (flint.arb.sin, flint.arb.cos),

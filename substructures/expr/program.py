@@ -146,7 +146,7 @@ class Program:
         return Program(
             tuple(self.symbols[i] for i in used),
             tuple(renumbered(self.operations[i], new, symbol) for i in keep),
-            {n: _moved(self.outputs[n], new) for n in names},
+            {n: replace(x, entries=tuple([new[i] for i in x.entries])) for n in names for x in (self.outputs[n],)},
             self.not_judged & frozenset(names),
         )
 
@@ -201,15 +201,13 @@ class Program:
 def renumbered(operation: Operation, new: Mapping[int, int], symbol: Mapping[int, int]) -> Operation:
     """The operation with its operands (or symbol number) replaced."""
     op = operation[0]
+    if op in BINARY:
+        return op, new[operation[1]], new[operation[2]]
     if op in ARITY:
-        return (op, *(new[i] for i in operation[1:]))
+        return (op, *[new[i] for i in operation[1:]])
     if op == "sym":
         return op, symbol[operation[1]]
     return (op, new[operation[1]], operation[2]) if op == "powi" else operation
-
-
-def _moved(output: Output, new: Mapping[int, int]) -> Output:
-    return Output(output.shape, output.index, tuple(new[i] for i in output.entries), output.symmetry)
 
 
 #: expressions by index

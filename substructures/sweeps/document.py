@@ -9,7 +9,7 @@ from pydantic_core import PydanticCustomError
 
 from substructures.analysis.motion.problems.output_times import MAX_OUTPUTS
 from substructures.documents import DocumentPart
-from substructures.documents.fields import Real
+from substructures.documents.fields import NUMERIC, Real
 from substructures.documents.patterns import NAME
 from substructures.ensembles.motion_column import MOST_COLUMNS, MotionColumn
 from substructures.ensembles.quantity_columns import QuantityColumn
@@ -68,7 +68,7 @@ class SimulationColumn(MotionColumn):
     analysis: Literal["simulation"]
     at: dict[str, Any] = Field(default_factory=dict)
     span: tuple[Real, Real]
-    count: Annotated[int, Field(ge=2, le=MAX_OUTPUTS)] = 101
+    count: Annotated[int, Field(ge=2, le=MAX_OUTPUTS), NUMERIC] = 101
     relative_tolerance: Annotated[Real, Field(ge=1e-14, le=1e-1)] = 1e-8
     absolute_tolerance: Annotated[Real, Field(ge=0, le=1e-1)] | None = None
 
@@ -119,7 +119,7 @@ class Query(DocumentPart):
 
     q: str = ""
     tag: str | None = None
-    dof: int | None = None
+    dof: Annotated[int, NUMERIC] | None = None
     joints: str | None = None
 
 
@@ -148,5 +148,5 @@ class SweepDocument(DocumentPart):
     columns: dict[ColumnName, Column] = Field(min_length=1, max_length=MOST_COLUMNS)
     where: Annotated[str, Field(max_length=2000)] = ""
     pareto: Pareto | None = None
-    keep: Annotated[int, Field(ge=1, le=MOST_KEPT)] | None = None
-    proof: Annotated[int, Field(ge=0, le=10_000)] = 0
+    keep: Annotated[int, Field(ge=1, le=MOST_KEPT), NUMERIC] | None = None
+    proof: Annotated[int, Field(ge=0, le=10_000), NUMERIC] = 0

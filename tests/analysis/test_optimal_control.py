@@ -244,6 +244,22 @@ def test_a_nanometre_is_a_way_as_a_metre_is(q: float, way: float, segments: int)
     assert found.trajectory.q[-1, 0] - q == pytest.approx(way, rel=1e-5)
 
 
+@pytest.mark.parametrize("path", [{"x.s'": (None, 1.2)}, {"3*x.s'": (None, 3.6)}, {"tau.x.s*10^9": (-5, 5)}])
+def test_limits_along_a_way_of_a_nanometre_hold_as_along_a_metre(path: dict[str, tuple[float | None, float]]) -> None:
+    """At the same cost, over the square of the way; without limits it is 12, at a speed of at most 1.5."""
+    costs = []
+    for way in (1.0, 1e-9):
+        problem = ControlProblem(
+            controls=["tau.x.s"], horizon=1, intervals=20, q=[0], cost=Cost(f"(10^9/{way!r}*tau.x.s)^2")
+        )
+        limits = {text: tuple(x and x * way for x in pair) for text, pair in path.items()}
+        found = optimal_control(nanokilogram(), problem, Demands(End([way], [0]), path=limits))
+        assert (found.status, found.is_right) == ("optimal", True)
+        costs.append(found.cost)
+    assert costs[0] > 12.05
+    assert costs[1] == pytest.approx(costs[0], rel=1e-4)
+
+
 def test_what_rounding_demands_is_no_size() -> None:
     """0.1 + 0.2 is no move from 0.3: the motion of the rates alone is what counts."""
     model, start = slider(), np.array([0.3, 0.0])

@@ -9,9 +9,10 @@ import pytest
 from analysis_models import catalogue_model
 from simulated import simulated
 
-from substructures.analysis.motion import single_steps
+from substructures.analysis.equations import kernels
+from substructures.analysis.motion import simulation, single_steps
 from substructures.analysis.motion.conditions import DYNAMICS, read_conditions
-from substructures.analysis.motion.integrators import integrated_motion, integration
+from substructures.analysis.motion.integrators import compiled_steps, integrated_motion, integration
 from substructures.analysis.motion.integrators.at_once import taken_at_once
 from substructures.analysis.motion.integrators.compiled_steps import EXPLICIT, CompiledStepper, compiled_stepper
 from substructures.analysis.motion.integrators.steppers import roughly_within
@@ -23,6 +24,12 @@ from substructures.compile import target
 
 pytestmark = pytest.mark.skipif(not target.available(), reason="machine code cannot be made, or is not wanted")
 START: dict[str, Any] = {"q": [1.2, 0.4], "qd": [2.0, -1.0]}
+
+
+@pytest.fixture(autouse=True)
+def by_kernels(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Series come from kernels, of the first motion, too: interpreted ones have other roundings."""
+    monkeypatch.setattr(kernels, "COMPILED", -np.inf)
 
 
 def both(monkeypatch: pytest.MonkeyPatch, **given: Any) -> tuple[Trajectory, Trajectory, int]:
@@ -98,8 +105,9 @@ def test_who_watches_ends_it_within_those_taken_together(monkeypatch: pytest.Mon
 
 
 def test_those_kept_for_the_judges(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Of many steps every second one is dropped, again and again."""
+    """Of many steps every second one is dropped, again and again, with others of the same call before and behind."""
     monkeypatch.setattr(integrated_motion, "KEPT", 10)
+    monkeypatch.setattr(compiled_steps, "MOST", 7)
     one, two, calls = both(monkeypatch, span=[0, 5])
     assert calls
     assert one.steps > 40
@@ -158,7 +166,7 @@ def test_steps_done_again_one_by_one(monkeypatch: pytest.MonkeyPatch) -> None:
     """The judge takes them together, too, or one by one where the ends are not all reached."""
     model = catalogue_model("acrobot")
     one = simulated(model, **START, span=[0, 1])
-    monkeypatch.setattr(single_steps, "at_once", lambda f, stepper: single_steps.one_by_one(f, stepper, f.enter))
+    monkeypatch.setattr(simulation, "at_once", lambda f, choice: single_steps.one_by_one(f, choice.stepper(), f.enter))
     two = simulated(model, **START, span=[0, 1])
     assert next(c for c in one.checks if c.name == "steps").worst > 0
     assert [c.summary() for c in one.checks] == [c.summary() for c in two.checks]

@@ -14,12 +14,15 @@ import numpy as np
 import pytest
 from exported_models import exported_of, tree_of, write
 from mixed_program import mixed_program
+from random_expressions import collected
 from run_code import STRICT, alone, shared, tool
 
 from substructures.errors import InvalidArgument
 from substructures.export import Exported, Function
 from substructures.export.rounding import Ranges, bounds, read_ranges
+from substructures.expr.graph import Graph
 from substructures.expr.interpret import interpret
+from substructures.expr.program import Formulas
 
 FLAGS = [*STRICT, "-Wdouble-promotion", "-ffp-contract=off"]
 
@@ -115,6 +118,20 @@ def test_narrower_ranges_have_a_lower_bound() -> None:
     ]
     assert errors == sorted(errors, reverse=True)
     assert 0 < errors[-1] < errors[0] / 5
+
+
+def test_what_can_have_no_bound_lets_nothing_be_halved() -> None:
+    """1/x has none where x may vanish, wherever its range is cut: the bound of 1/(y^2 - y + 1) is as it is alone."""
+    g = Graph()
+    x, y = g.symbol("x"), g.symbol("y")
+    needs_halves = g.one / (y * y - y + g.one)
+    both = collected(g, a=Formulas((1,), {(0,): g.one / x}), b=Formulas((1,), {(0,): needs_halves}))
+    one = collected(g, b=Formulas((1,), {(0,): needs_halves}))
+    found, alone_found = (bounds(alone(p).functions[0], {"y": (0.0, 1.0)}) for p in (both, one))
+    assert np.isinf(found["a"][0])
+    assert found["b"] == alone_found["b"]
+    assert 1.2e-7 < found["b"][0] < 1e-4
+    assert 4 / 3 <= found["b"][1] < 10
 
 
 @pytest.mark.parametrize(

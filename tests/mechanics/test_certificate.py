@@ -4,19 +4,31 @@ from __future__ import annotations
 
 from collections import Counter
 from dataclasses import replace
+from itertools import islice
 from typing import Any
 
 import numpy as np
 import pytest
-from damaged import as_json, damages, errors_of, found_in_part, found_in_tree, has_effect, nudged_numbers, verified
+from damaged import (
+    as_json,
+    damages,
+    errors_of,
+    found_in_part,
+    found_in_tree,
+    has_effect,
+    nudged_numbers,
+    refusal,
+    verified,
+)
 from random_trees import Kind, coordinates_of, random_definition
 
-from substructures import Definition, Model, Part, TreeSpec, catalogue, couple, derive
+from substructures import Definition, Model, Part, Program, TreeSpec, catalogue, couple, derive
 from substructures.certificate.compare import TOLERANCE
 from substructures.documents import read_json
 from substructures.errors import VerificationFailed
 from substructures.expr.parse import parse
 from substructures.loads import scope as loads_scope
+from substructures.part.derive import recheck
 from substructures.tree.certificate import certify_tree
 
 PART: dict[str, Any] = {
@@ -176,6 +188,20 @@ def test_damage_of_any_output_of_a_tree_is_found() -> None:
         found = found_in_tree(spec, parts, model, wrong)
         assert found is not None, (kind, place)
         assert place.partition("[")[0] in found, (kind, place, found)
+
+
+def test_damage_is_told_as_where_nothing_is_known() -> None:
+    """In the words of certificates that compute all of it anew, of programs that a store gives back as they are."""
+    part, rng = derive(Definition.read(EVERYTHING)), np.random.default_rng(1)
+    found = [wrong for *_, wrong in (*damages(part.program, rng, kinds=1), *nudged_numbers(part.program))][::12]
+    for wrong in found:
+        assert Program.from_bytes(wrong.to_bytes()) == wrong
+        assert found_in_part(part, wrong) == refusal(lambda wrong=wrong: recheck(replace(part, program=wrong)))
+    spec, parts, model = tree_of_everything()
+    definitions, summary = {name: x.definition for name, x in parts.items()}, model.summary()
+    for *_, wrong in islice(damages(model.program, rng, kinds=1), 0, None, 6):
+        anew = refusal(lambda wrong=wrong: certify_tree(spec, definitions, summary, wrong))
+        assert found_in_tree(spec, parts, model, wrong) == anew is not None
 
 
 # takes seconds: each damage is certified anew

@@ -6,7 +6,9 @@ from importlib.resources import files
 from typing import Any
 
 import pytest
+from fastapi.testclient import TestClient
 
+from .conftest import PENDULUM
 from .one_store import filled, store
 from .test_model_pages import READY, Tab, address, browser, in_browser
 
@@ -49,6 +51,15 @@ def test_axe_finds_nothing_serious(browser: Any, address: str, path: str, scheme
         tab.until(READY)
     assert faults(tab) == []
     tab.close()
+
+
+@in_browser
+@pytest.mark.deep
+def test_long_formulas_of_a_difference_are_broken(browser: Any, address: str, filled: TestClient) -> None:
+    body = {**PENDULUM["bodies"][0], "mass": "m" + "*1.0000001" * 20}
+    answer = filled.post("/v1/substructures", json={**PENDULUM, "name": "long", "bodies": [body]})
+    assert answer.status_code == 201, answer.text
+    Tab(browser, address, "/substructures/pendulum@1/difference?to=long", 390).close()
 
 
 @in_browser

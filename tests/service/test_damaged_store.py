@@ -288,6 +288,11 @@ def program_of_no_tree(connection: sqlite3.Connection) -> None:
     connection.execute("UPDATE trees SET program = ?", (pendulum(connection)[1],))
 
 
+def called_otherwise(connection: sqlite3.Connection) -> None:
+    """A part becomes a version of another name, which searches do not find."""
+    connection.execute("UPDATE versions SET name = 'slider', version = 2 WHERE name = 'pendulum'")
+
+
 WRONG: list[tuple[Damage, tuple[str, ...], bool]] = [
     (lambda c: wrong_formula(c, "parts"), ("substructure",), True),
     (lambda c: wrong_formula(c, "trees"), ("tree cell@1",), True),
@@ -312,6 +317,7 @@ WRONG: list[tuple[Damage, tuple[str, ...], bool]] = [
     (found_by_other_parts, ("tree cell@1", "parts"), True),
     (program_of_another, ("substructure pendulum@1", "program"), True),
     (program_of_no_tree, ("tree cell@1", "program"), True),
+    (called_otherwise, ("substructure slider@2", "'pendulum'"), False),
     (other_definition, ("substructure pendulum@1",), False),
     (broken_definition, ("substructure pendulum@1", "tree cell@1"), False),
     (gone_part, ("substructure pendulum@1", "submit it again"), False),
@@ -424,6 +430,7 @@ def _items(client: TestClient, kind: str) -> list[dict[str, Any]]:
     [
         (lambda c: wrong_formula(c, "parts"), {"substructure": "*"}, "verification-failed"),
         (lambda c: wrong_formula(c, "trees"), {"tree": "*"}, "verification-failed"),
+        (called_otherwise, {"substructure": "slider@2"}, "verification-failed"),
         (wrong_tree, {"tree": "cell"}, "damaged-content"),
         (other_axes, {"tree": "cell@1"}, "verification-failed"),
         (gone_tree_program, {"tree": "cell"}, "missing-content"),

@@ -5,7 +5,10 @@ from __future__ import annotations
 import io
 import json
 from collections.abc import Iterator
+from contextlib import contextmanager
+from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from pathlib import Path
+from threading import Thread
 from typing import Any
 
 import numpy as np
@@ -294,6 +297,52 @@ def farm(tmp_path: Path) -> Iterator[Server]:
     server.kill()
 
 
+@contextmanager
+def cut_short() -> Iterator[str]:
+    """The address of a server whose answers end before their end."""
+
+    class Handler(BaseHTTPRequestHandler):
+        def do_POST(self) -> None:
+            self.send_response(200)
+            self.send_header("Content-Type", "application/json")
+            self.send_header("Content-Length", "1000000")
+            self.end_headers()
+            self.wfile.write(b'{"status": "finished", "t": [0, 1')
+
+        do_GET = do_POST  # noqa: N815 -- as http.server calls it
+
+        def log_message(self, *_: Any) -> None:
+            """Nothing."""
+
+    with ThreadingHTTPServer(("127.0.0.1", 0), Handler) as server:
+        thread = Thread(target=server.serve_forever)
+        thread.start()
+        try:
+            yield f"http://127.0.0.1:{server.server_port}/"
+        finally:
+            server.shutdown()
+            thread.join()
+
+
+@in_browser
+@pytest.mark.deep
+def test_an_answer_that_ends_too_soon_is_asked_for_again(browser: Any, address: str, trees: TestClient) -> None:
+    tab = opened(browser, address, "/trees/swing@1/motion?pose=0.4&t=1")
+    told = computed(trees, "swing@1", ran(tab))
+    with cut_short() as elsewhere:
+        tab.page.route("**/simulations", lambda route: route.continue_(url=elsewhere))
+        for button in ("text=CSV", "#run"):
+            tab.page.click(button)
+            tab.until(TELLS.format("the connection is lost: see whether the server runs, then try again"))
+            assert tab.page.is_enabled(button)
+        tab.page.unroute("**/simulations")
+    with tab.page.expect_download() as found:
+        tab.page.click("text=CSV")
+    table = np.genfromtxt(Path(found.value.path()), delimiter=",", names=True)
+    assert table["t"] == pytest.approx(told["t"])
+    closed(tab)
+
+
 def later(route: Any) -> None:
     """A request that becomes a job."""
     route.continue_(headers={**route.request.headers, "prefer": "respond-async"})
@@ -365,6 +414,18 @@ def test_a_motion_is_followed_beyond_the_end_of_its_server(browser: Any, farm: S
     tab.until(TELLS.format("job"))
     in_between(tab, farm, TELLS.format("the connection is lost"))
     assert "right" in (ran(tab) and tab.page.inner_text("#verdict"))
+    closed(tab)
+
+
+@in_browser
+@pytest.mark.deep
+def test_the_motion_of_a_job_is_fetched_again_where_it_ends_too_soon(browser: Any, farm: Server) -> None:
+    tab = opened(browser, farm.address, "/trees/swing@1/motion?pose=0.4")
+    tab.page.route("**/simulations", later)
+    with cut_short() as elsewhere:
+        tab.page.route("**/files/*", lambda route: route.continue_(url=elsewhere), times=1)
+        tab.page.click("#run")
+        assert "right" in (ran(tab) and tab.page.inner_text("#verdict"))
     closed(tab)
 
 

@@ -1,23 +1,33 @@
 """Stored programs with one fault each, as a wrong derivation or a damaged store would leave them (digests made anew);
 what certificates say of them.
+
+Hundreds of programs are compared with the same documents at the same states: what these say is computed once.
 """
 
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import replace
 from fractions import Fraction
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
+import pytest
+from flint import ctx
 
 from substructures import Model, Part, TreeSpec
 from substructures.certificate.agreement import require_no_less
+from substructures.certificate.outputs import Outputs
+from substructures.certificate.part_outputs import part_outputs
+from substructures.certificate.tree_outputs import tree_outputs
 from substructures.errors import VerificationFailed
 from substructures.expr.interpret import interpret
+from substructures.expr.known import Known
 from substructures.expr.program import Operation, Program
 from substructures.part.derive import recheck
+from substructures.part.mechanism import Mechanism, mechanism
 from substructures.tree.certificate import certify_tree
 
 NUDGE = Fraction(1_000_001, 1_000_000)
@@ -51,8 +61,8 @@ def _with(program: Program, changed: dict[int, Operation]) -> Program:
 
 
 def _read(program: Program) -> Program:
-    """As it would be read from a store, with a digest of its own; what no output needs any more is left out."""
-    return Program.from_bytes(program.select(list(program.outputs)).to_bytes())
+    """As a store gives it back (test_certificate.py), with a digest of its own; what no output needs is left out."""
+    return program.select(list(program.outputs))
 
 
 def _damaged(program: Program, name: str, k: int, kind: str, rng: np.random.Generator) -> Program | None:
@@ -87,19 +97,54 @@ def errors_of(certificate: Any) -> dict[str, float | None]:
     return found
 
 
+class Once:
+    """``part_outputs`` or ``tree_outputs``, computed once for the same arguments; kept for one document at a time.
+
+    Of the outputs of a program, which are the last argument, they may know all but the places in the program.
+    """
+
+    def __init__(self, outputs: Callable[..., Outputs]) -> None:
+        self._outputs, self._of, self._known = outputs, "", dict[Any, Outputs]()
+
+    def __call__(self, *given: Any) -> Outputs:
+        *documents, values, stored = given
+        if (text := repr(documents)) != self._of:
+            self._of, self._known = text, {}
+        state = ((name, *x.mid().man_exp(), *x.rad().man_exp()) for name, x in values.items())
+        shapes = ((name, x.shape, x.symmetry, x.index) for name, x in stored.items())
+        key = ctx.prec, tuple(state), tuple(shapes)
+        if key not in self._known:
+            self._known[key] = self._outputs(*given)
+        return self._known[key]
+
+
+PART_OUTPUTS, TREE_OUTPUTS = Once(part_outputs), Once(tree_outputs)
+
+
+@lru_cache(maxsize=1)
+def _mechanism(known: Known) -> Mechanism:
+    return mechanism(known.source)
+
+
 def found_in_part(part: Part, wrong: Program) -> str | None:
     """What the certificate of the part says of a program; None when it lets it pass."""
-    try:
-        recheck(replace(part, program=wrong))
-    except VerificationFailed as error:
-        return str(error)
-    return None
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("substructures.part.derive.mechanism", lambda of: _mechanism(Known(of.digest, of)))
+        patch.setattr("substructures.part.certificate.part_outputs", PART_OUTPUTS)
+        return refusal(lambda: recheck(replace(part, program=wrong)))
 
 
 def found_in_tree(spec: TreeSpec, parts: dict[str, Part], model: Model, wrong: Program) -> str | None:
+    definitions, summary = {name: part.definition for name, part in parts.items()}, model.summary()
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("substructures.tree.certificate.tree_outputs", TREE_OUTPUTS)
+        return refusal(lambda: require_no_less(model.certificate, certify_tree(spec, definitions, summary, wrong)))
+
+
+def refusal(certify: Callable[[], object]) -> str | None:
+    """What is said where nothing is certified."""
     try:
-        definitions = {name: part.definition for name, part in parts.items()}
-        require_no_less(model.certificate, certify_tree(spec, definitions, model.summary(), wrong))
+        certify()
     except VerificationFailed as error:
         return str(error)
     return None

@@ -82,6 +82,8 @@ def _part(item: ItemDocument, blobs: Blobs) -> Outcome:
     with reading(f"the part {name}", digest):
         Program.from_bytes(blobs[item["program"]])
     part = derived_part(blobs[digest], item.get("recipe"), item["nodes"])
+    if part.definition.name != name:
+        raise VerificationFailed(f"it is called '{name}' in the store, and '{part.definition.name}' in its document")
     _require_same(item["program"], part.program)
     return _outcome(name, digest, part.certificate, {"warnings": part.certificate["warnings"]})
 

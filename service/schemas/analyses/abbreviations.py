@@ -8,6 +8,7 @@ from pydantic import Field
 
 from service.schemas.measured import RANGES, Values
 from substructures.documents import DocumentPart
+from substructures.documents.fields import NUMERIC
 from substructures.export import FORMATS
 from substructures.printers import FORMS
 
@@ -18,7 +19,7 @@ class AbbreviationRequest(DocumentPart):
     """
 
     quantity: str = Field(max_length=200, description="metric, gravity, bias, inverse_dynamics, ...")
-    simplify: float = Field(ge=0, lt=1, allow_inf_nan=False, description="0.01: one percent")
+    simplify: Annotated[float, Field(ge=0, lt=1, allow_inf_nan=False), NUMERIC] = Field(description="0.01: one percent")
     ranges: Annotated[dict[str, Any], RANGES] = Field(
         {},
         description="[lowest, highest] by name of a coordinate, velocity q', acceleration q'', input, parameter or t, "

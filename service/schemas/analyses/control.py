@@ -12,10 +12,13 @@ from service.schemas.measured import BY_NAME, COORDINATES, SECONDS, VELOCITIES
 from service.schemas.parts import RequestPart
 from substructures.analysis.control import demands, problem
 from substructures.documents import DocumentPart
+from substructures.documents.fields import NUMERIC
 
 LIMIT = "largest relative error by the size of steps in a right result, by a second run with steps half as long"
 
-Finite = Annotated[float, Field(allow_inf_nan=False)]
+Finite = Annotated[float, Field(allow_inf_nan=False), NUMERIC]
+#: a number, or no demand
+Wanted = Annotated[float, NUMERIC] | None
 Constants = Annotated[dict[str, Finite], BY_NAME]
 #: one number, or one for each node
 ByControl = Annotated[dict[str, Any], BY_NAME]
@@ -41,19 +44,19 @@ class ControlProblem(DocumentPart):
 
     controls: tuple[str, ...] = Field(description="names of inputs; none where something else is sought alone")
     cost: Cost = Cost()
-    horizon: Annotated[float, SECONDS] = Field(gt=0, allow_inf_nan=False, description="s")
-    intervals: int = Field(ge=1, le=problem.MAX_INTERVALS)
-    steps: int = Field(1, ge=1, le=10_000, description="Runge-Kutta steps in each interval")
+    horizon: Annotated[float, Field(gt=0, allow_inf_nan=False), NUMERIC, SECONDS] = Field(description="s")
+    intervals: Annotated[int, Field(ge=1, le=problem.MAX_INTERVALS), NUMERIC]
+    steps: Annotated[int, Field(ge=1, le=10_000), NUMERIC] = Field(1, description="Runge-Kutta steps in each interval")
     hold: Literal["constant", "linear"] = "linear"
     q: Annotated[Any, COORDINATES] = Field(description="where the motion starts: (n,) or by coordinate; rad, m")
     qd: Annotated[Any, VELOCITIES] = Field(None, description="rad/s, m/s; default: at rest")
-    t: Annotated[float, SECONDS] = Field(0.0, allow_inf_nan=False, description="when it starts, s")
+    t: Annotated[Finite, SECONDS] = Field(0.0, description="when it starts, s")
     inputs: Constants = Field({}, description="constant values of the other inputs; default: their own, or zero")
     parameters: Constants = Field({}, description="instead of their defaults")
 
 
 #: of requests with a second run
-ErrorLimit = Annotated[float, Field(gt=0, allow_inf_nan=False, description=LIMIT)]
+ErrorLimit = Annotated[float, Field(gt=0, allow_inf_nan=False, description=LIMIT), NUMERIC]
 
 
 class GradientRequest(ControlProblem):
@@ -69,8 +72,8 @@ class GradientRequest(ControlProblem):
 class End(RequestPart):
     """Demands on the last state: a list with null where nothing is demanded, or some by coordinate."""
 
-    q: Annotated[list[float | None] | dict[str, float | None], COORDINATES] = Field({}, description="rad, m")
-    qd: Annotated[list[float | None] | dict[str, float | None], VELOCITIES] = Field({}, description="rad/s, m/s")
+    q: Annotated[list[Wanted] | dict[str, Wanted], COORDINATES] = Field({}, description="rad, m")
+    qd: Annotated[list[Wanted] | dict[str, Wanted], VELOCITIES] = Field({}, description="rad/s, m/s")
 
     def value(self) -> demands.End:
         """As the science takes it."""
@@ -81,14 +84,14 @@ class OptimalControlRequest(ControlProblem):
     """A problem with demands, bounds, limits along the motion and a guess; the horizon and parameters may be free."""
 
     end: End = End()
-    bounds: Annotated[dict[str, tuple[float | None, float | None]], BY_NAME] = Field(
+    bounds: Annotated[dict[str, tuple[Wanted, Wanted]], BY_NAME] = Field(
         {}, description="least and largest value by control"
     )
     guess: ByControl = Field({}, description="controls to begin with: one number, or one for each node")
     path: dict[str, tuple[Finite | None, Finite | None]] = Field(
         {}, description="least and largest value by expression in q, q', u, t and parameters, at all nodes; SI"
     )
-    free_parameters: Annotated[dict[str, tuple[float | None, float | None]], BY_NAME] = Field(
+    free_parameters: Annotated[dict[str, tuple[Wanted, Wanted]], BY_NAME] = Field(
         {}, description="unknown beside the controls: least and largest value by parameter"
     )
     free_horizon: Annotated[tuple[Finite, Finite] | None, SECONDS] = Field(
@@ -97,7 +100,11 @@ class OptimalControlRequest(ControlProblem):
     warm_start: dict[str, Any] | None = Field(
         None, description="an earlier answer (names, horizon, parameters, trajectory with series) to begin with"
     )
-    segments: int | None = Field(None, ge=1, description="divides intervals; default: the largest such up to 10")
-    iterations: int = Field(500, ge=1, le=100_000)
-    tolerance: float = Field(1e-8, gt=0, lt=1, description="change of the cost at which the search ends")
+    segments: Annotated[int, Field(ge=1), NUMERIC] | None = Field(
+        None, description="divides intervals; default: the largest such up to 10"
+    )
+    iterations: Annotated[int, Field(ge=1, le=100_000), NUMERIC] = 500
+    tolerance: Annotated[float, Field(gt=0, lt=1), NUMERIC] = Field(
+        1e-8, description="change of the cost at which the search ends"
+    )
     error_limit: ErrorLimit = problem.ERROR_LIMIT

@@ -20,7 +20,7 @@ from service.schemas.analyses.motions import (
 from service.schemas.measured import SECONDS, WithUnits
 from service.schemas.numbers import StateColumns, ValueColumns
 from substructures.analysis.motion.problems.output_times import MAX_OUTPUTS, OutputGrid, OutputTimes
-from substructures.documents.fields import Name, Positive, Real
+from substructures.documents.fields import NUMERIC, Name, Positive, Real
 from substructures.ensembles.motion_column import MOST_COLUMNS, MotionColumn
 from substructures.ensembles.samples import Samples
 
@@ -45,7 +45,7 @@ class EnsembleRequest(WithQuasiVelocities):
     span: Span = Field(description="s")
     times: Annotated[Annotated[Reals, Field(max_length=MAX_OUTPUTS)] | None, SECONDS] = Field(None, description="s")
     step: Seconds | None = Field(None, description="s")
-    count: Annotated[int, Field(ge=2, le=MAX_OUTPUTS)] | None = None
+    count: Annotated[int, Field(ge=2, le=MAX_OUTPUTS), NUMERIC] | None = None
     columns: dict[Name, MotionColumn] = Field(default_factory=dict, max_length=MOST_COLUMNS)
     events: Annotated[tuple[Event, ...], Field(max_length=MAX_EVENTS)] = Field(
         (), description="of every member, which is computed by itself then, as with contacts"
@@ -58,7 +58,7 @@ class EnsembleRequest(WithQuasiVelocities):
     relative_tolerance: Annotated[Real, Field(ge=1e-14, le=1e-1)] = 1e-8
     absolute_tolerance: Annotated[Real, Field(ge=0, le=1e-1)] = 1e-10
     max_step: Seconds | None = Field(None, description="s")
-    max_steps: Annotated[int, Field(ge=1, le=100_000_000)] = 1_000_000
+    max_steps: Annotated[int, Field(ge=1, le=100_000_000), NUMERIC] = 1_000_000
     drift_limit: Positive = Field(1e-6, description="largest relative drift of first integrals of a right motion")
 
     @model_validator(mode="after")

@@ -34,7 +34,7 @@ from substructures.analysis import simulate as science
 from substructures.analysis.motion.problems.contacts import ROUGHEST
 from substructures.analysis.motion.problems.output_times import MAX_OUTPUTS, OutputGrid, OutputTimes
 from substructures.documents import DocumentPart
-from substructures.documents.fields import Name, PlainNumber, Positive, Real
+from substructures.documents.fields import NUMERIC, Name, PlainNumber, Positive, Real
 from substructures.errors import InvalidArgument
 
 MAX_EVENTS = 100
@@ -155,7 +155,7 @@ class SpanRequest(StateRequest):
     span: Span = Field(description="s")
     times: Annotated[Annotated[Reals, Field(max_length=MAX_OUTPUTS)] | None, SECONDS] = Field(None, description="s")
     step: Seconds | None = Field(None, description="s")
-    count: Annotated[int, Field(ge=2, le=MAX_OUTPUTS)] | None = None
+    count: Annotated[int, Field(ge=2, le=MAX_OUTPUTS), NUMERIC] | None = None
     events: Annotated[tuple[Event, ...], Field(max_length=MAX_EVENTS)] = ()
     series: Annotated[dict[Name, PlainNumber], EXPRESSIONS] = Field(
         {}, max_length=MAX_EVENTS, description="expressions to be followed"
@@ -163,7 +163,7 @@ class SpanRequest(StateRequest):
     relative_tolerance: Annotated[Real, Field(ge=1e-14, le=1e-1)] = 1e-10
     absolute_tolerance: Annotated[Real, Field(ge=0, le=1e-1)] = 1e-12
     max_step: Seconds | None = Field(None, description="s")
-    max_steps: Annotated[int, Field(ge=1, le=100_000_000)] = 1_000_000
+    max_steps: Annotated[int, Field(ge=1, le=100_000_000), NUMERIC] = 1_000_000
     drift_limit: Positive = Field(1e-7, description="largest relative drift of first integrals of a right result")
 
     @model_validator(mode="after")

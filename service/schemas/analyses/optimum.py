@@ -8,7 +8,7 @@ from pydantic import Field
 
 from service.schemas.measured import BY_NAME
 from substructures.documents import DocumentPart
-from substructures.documents.fields import Name, Real
+from substructures.documents.fields import NUMERIC, Name, Real
 from substructures.ensembles.motion_column import MOST_COLUMNS
 from substructures.sweeps.document import Column
 
@@ -23,5 +23,5 @@ class OptimalParametersRequest(DocumentPart):
     columns: dict[Name, Column] = Field({}, max_length=MOST_COLUMNS, description="as of a sweep, by name")
     where: str = Field("", max_length=2000, description="comparisons that have to hold, joined by `and`")
     parameters: Annotated[dict[str, Real], BY_NAME] = Field({}, description="the others, in place of their defaults")
-    starts: Annotated[int, Field(ge=1, le=64)] = 8
-    seed: Annotated[int, Field(ge=0, lt=2**53)] = 0
+    starts: Annotated[int, Field(ge=1, le=64), NUMERIC] = 8
+    seed: Annotated[int, Field(ge=0, lt=2**53), NUMERIC] = 0

@@ -10,7 +10,7 @@ from service.schemas.analyses.motions import MAX_EVENTS, Event, Seconds, StateRe
 from service.schemas.measured import EXPRESSION, OF_QUANTITY, OF_VARIED, SECONDS
 from service.schemas.parts import RequestPart
 from substructures.analysis.orbits.orbit import Section
-from substructures.documents.fields import PlainNumber, Real
+from substructures.documents.fields import NUMERIC, PlainNumber, Real
 
 Relative = Annotated[Real, Field(ge=1e-14, le=1e-2)]
 Absolute = Annotated[Real, Field(ge=0, le=1e-2)]
@@ -22,7 +22,7 @@ class OrbitSection(RequestPart):
     quantity: Annotated[PlainNumber, EXPRESSION] = Field(description="in coordinates, velocities and parameters")
     level: Annotated[Real, OF_QUANTITY] = 0.0
     direction: Literal["rising", "falling"] = "rising"
-    count: Annotated[int, Field(ge=1, le=1000)] = Field(1, description="the return that closes the orbit")
+    count: Annotated[int, Field(ge=1, le=1000), NUMERIC] = Field(1, description="the return that closes the orbit")
     duration: Seconds = Field(100.0, description="s, at most, of one return")
 
     def value(self) -> Section:
@@ -41,13 +41,15 @@ class PeriodicOrbitRequest(StateRequest):
     section: OrbitSection | None = Field(None, description="near the start, in place of `period`, which is unknown")
     fixed: bool = Field(False, description="whether the period stays as it is")
     hold: tuple[str, ...] = Field((), max_length=500, description="coordinates and velocities that stay as given")
-    turns: dict[str, int] = Field({}, description="whole turns of revolute coordinates in a period")
+    turns: dict[str, Annotated[int, NUMERIC]] = Field({}, description="whole turns of revolute coordinates in a period")
     vary: str | None = Field(None, description="of a family: a parameter, or a coordinate or velocity that is held")
     values: Annotated[tuple[Real, ...], OF_VARIED] = Field((), max_length=1000, description="of `vary`")
     between: Annotated[tuple[Real, Real] | None, OF_VARIED] = Field(
         None, description="in place of `values`: a parameter's first and last, followed by arclength through folds"
     )
-    steps: Annotated[int, Field(ge=2, le=1000)] = Field(50, description="of that family over the range, at least")
+    steps: Annotated[int, Field(ge=2, le=1000), NUMERIC] = Field(
+        50, description="of that family over the range, at least"
+    )
     events: tuple[Event, ...] = Field((), max_length=MAX_EVENTS, description="that act, each with its `reset`")
     relative_tolerance: Relative = 1e-11
     absolute_tolerance: Absolute = 1e-13
@@ -59,7 +61,7 @@ class PoincareSectionRequest(StateRequest):
     quantity: Annotated[PlainNumber, EXPRESSION] = Field(description="in coordinates, velocities, parameters and t")
     level: Annotated[Real, OF_QUANTITY] = 0.0
     direction: Literal["rising", "falling", "both"] = "rising"
-    count: Annotated[int, Field(ge=1, le=1_000_000)] = Field(1000, description="of the first crossings")
+    count: Annotated[int, Field(ge=1, le=1_000_000), NUMERIC] = Field(1000, description="of the first crossings")
     duration: Seconds = Field(description="s, at most")
     relative_tolerance: Relative = 1e-10
     absolute_tolerance: Absolute = 1e-12
@@ -70,6 +72,8 @@ class LyapunovRequest(StateRequest):
 
     duration: Seconds = Field(description="s")
     transient: Annotated[Seconds | None, Field(description="s before that, which do not count")] = None
-    intervals: Annotated[int, Field(ge=20, le=1_000_000)] = Field(200, description="between two factorisations")
+    intervals: Annotated[int, Field(ge=20, le=1_000_000), NUMERIC] = Field(
+        200, description="between two factorisations"
+    )
     relative_tolerance: Relative = 1e-10
     absolute_tolerance: Absolute = 1e-12

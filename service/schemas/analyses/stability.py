@@ -25,7 +25,7 @@ from service.schemas.measured import (
     Values,
 )
 from substructures.documents import DocumentPart
-from substructures.documents.fields import Name, PlainNumber, Positive, Real
+from substructures.documents.fields import NUMERIC, Name, PlainNumber, Positive, Real
 
 States = Annotated[Any, COORDINATES]
 #: by name, one number or one for each state
@@ -92,9 +92,9 @@ class EquilibriaRequest(DocumentPart):
     """Where to look: ``starts`` (N, n), and ``count`` random ones in +-pi for angles, +-``reach`` for distances."""
 
     starts: States = None
-    count: Annotated[int, Field(ge=0, le=10_000)] = 32
+    count: Annotated[int, Field(ge=0, le=10_000), NUMERIC] = 32
     reach: Reach = Field(1.0, description="m")
-    seed: Annotated[int, Field(ge=0)] = 0
+    seed: Annotated[int, Field(ge=0), NUMERIC] = 0
     t: Annotated[Real, SECONDS] = 0.0
     parameters: Values = Field({}, description="in place of their defaults")
     inputs: Values = Field({}, description="constant; by default their own, or 0")
@@ -115,16 +115,16 @@ class SteadyMotionsRequest(DocumentPart):
     )
     held: Literal["momenta", "rates"] = "momenta"
     starts: States = None
-    count: Annotated[int, Field(ge=0, le=10_000)] = 32
+    count: Annotated[int, Field(ge=0, le=10_000), NUMERIC] = 32
     reach: Reach = Field(1.0, description="m")
-    seed: Annotated[int, Field(ge=0)] = 0
+    seed: Annotated[int, Field(ge=0), NUMERIC] = 0
     parameters: Values = Field({}, description="in place of their defaults")
     inputs: Values = Field({}, description="constant; by default their own, or 0")
     vary: str | None = Field(None, description="of families: a parameter, or a coordinate that moves")
     between: Annotated[tuple[Real, Real] | None, OF_STEADY] = Field(
         None, description="of `vary`: the first and the last"
     )
-    steps: Annotated[int, Field(ge=2, le=1000)] = Field(50, description="of a family over the range, at least")
+    steps: Annotated[int, Field(ge=2, le=1000), NUMERIC] = Field(50, description="of a family over the range, at least")
     velocities: dict[Name, str] | None = Field(
         None, max_length=100, description="with velocity constraints: quasi-velocities, as of `velocity-equations`"
     )

@@ -176,26 +176,41 @@ class ShootingProgram:
         row[self.own :] = slope.shares[1 + i, s]
 
     def on_path(self, z: Array) -> tuple[Array, Array]:
-        """What must not be negative, distances to the limits of the path at all nodes, and its derivatives by z."""
+        """What must not be negative, distances to limits at all nodes over their sizes, and its derivatives by z."""
         path = self.limits_on_path
         if path is None:
             return np.zeros(0), np.zeros((0, len(z)))
         run, slope = self.evaluated(z)
-        starts, controls = self.parts(z)
-        shooting, nodes = self.shooting_at(z), np.arange(self.S + 1)
-        u = controls[np.minimum(nodes, self.problem.nodes - 1)]
-        t = self.problem.t + nodes / self.S * shooting.problem.horizon
-        value, by = path.at(shooting.values, np.concatenate([starts, run.end[-1:]]), u, t)
-        slopes = np.zeros((self.S + 1, len(path.texts), len(z)))
+        value, by = self._along(path, z, run)
+        nodes, slopes = np.arange(self.S + 1), np.zeros((self.S + 1, len(path.texts), len(z)))
         for k in nodes:
             self._by_node(slopes[k], by[k], int(k), slope)
         # c - low and high - c, where they are finite
         signs = [(1.0, path.low, np.isfinite(path.low)), (-1.0, path.high, np.isfinite(path.high))]
-        rows = [(sign * (value - limit))[self._first_free :, some].ravel() for sign, limit, some in signs]
+        sizes, slopes = self.path_sizes, slopes / self.path_sizes[:, None]
+        rows = [(sign * (value - limit) / sizes)[self._first_free :, some].ravel() for sign, limit, some in signs]
         ways = [(sign * slopes)[self._first_free :, some].reshape(-1, len(z)) for sign, _, some in signs]
         return np.nan_to_num(np.concatenate(rows), nan=-BEYOND, posinf=BEYOND, neginf=-BEYOND), np.nan_to_num(
             np.concatenate(ways), nan=0.0, posinf=0.0, neginf=0.0
         )
+
+    def _along(self, path: PathLimits, z: Array, run: Rollout) -> tuple[Array, Array]:
+        """Values and slopes of the limited expressions at all nodes."""
+        starts, controls = self.parts(z)
+        shooting, nodes = self.shooting_at(z), np.arange(self.S + 1)
+        u = controls[np.minimum(nodes, self.problem.nodes - 1)]
+        t = self.problem.t + nodes / self.S * shooting.problem.horizon
+        return path.at(shooting.values, np.concatenate([starts, run.end[-1:]]), u, t)
+
+    @cached_property
+    def path_sizes(self) -> Array:
+        """Of the limited expressions (k,): what changes of the size of the motion make of them, at most 1."""
+        path, z = self.limits_on_path, self.guess()
+        if path is None:
+            return np.zeros(0)
+        _, slopes = self._along(path, z, self.evaluated(z)[0])
+        changes = np.abs(slopes[..., : self.size + self.m]) @ np.concatenate([self.sizes, self.units[0][: self.m]])
+        return np.array([power_of_2(min(x, 1.0)) for x in changes.max(axis=0)])
 
     def _by_node(self, rows: Array, by: Array, k: int, slope: Slope) -> None:
         """dc/dz at the node k into rows of zeros (expressions, variables), from dc/d(x, u, varied) ``by``."""

@@ -75,9 +75,10 @@ class Optimum:
     ``stationarity``: largest derivative of the Lagrangian by a free variable, relative to that of the cost or, where it
     is larger, to the cost (at least a millionth of what the search took off it) over the largest variable;
     ``violation``: largest violation of a demand, over the largest change that is demanded where this is less than 1
-    [rad, m]; ``hamiltonian_drift``: (max H - min H)/max |H| along the motion, None where H need not be constant.
-    ``history``: (cost, violation) after every iteration (K, 2). ``trajectory`` has the
-    series of substructures.analysis.control.cost_gradient, and the demands as its checks.
+    [rad, m], or of a limit along the path, over what such a change makes of it; ``hamiltonian_drift``: (max H - min
+    H)/max |H| along the motion, None where H need not be constant. ``history``: (cost, violation) after every iteration
+    (K, 2). ``trajectory`` has the series of substructures.analysis.control.cost_gradient, and the demands as its
+    checks.
     """
 
     status: Literal["optimal", "feasible", "failed"]

@@ -100,7 +100,7 @@ def _simulate(problem: TreeProblem, conditions: Conditions) -> Trajectory:
 
     # where every state says all of what comes after it
     is_plain = not isinstance(f, DecidedContacts) and problem.kind.friction != "exact"
-    alone = at_once(f, careful(problem.integrator).stepper()) if is_plain else None
+    alone = at_once(f, careful(problem.integrator)) if is_plain else None
     again = computed_again(problem, motion, state_groups(f.m, f.n), move, is_whole=is_whole, alone=alone)
     f.leave()
     return replace(found, checks=(*found.checks, *instead, *again))

@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from substructures.analysis.motion.integrators.compiled_steps import CompiledStepper
+from substructures.analysis.motion.integrators.compiled_steps import EXPLICIT, CompiledStepper
 from substructures.analysis.motion.integrators.fixed_step import FixedStep
 from substructures.analysis.motion.integrators.integrated_motion import IntegratedMotion
 from substructures.analysis.motion.integrators.integration import Function
@@ -146,10 +146,11 @@ def one_by_one(f: Function, stepper: Stepper, enter: Callable[[float, float], No
     return each(again)
 
 
-def at_once(f: RightHandSide, stepper: Stepper) -> From:
+def at_once(f: RightHandSide, choice: Integrator) -> From:
     """The same, together where the function is machine code that is the same at all times; one by one where it is not,
     or where they do not all come to their ends.
     """
+    stepper = choice.stepper()
     otherwise = one_by_one(f, stepper, f.enter)
 
     def every(spans: Array, states: Array) -> Array:
@@ -163,7 +164,7 @@ def at_once(f: RightHandSide, stepper: Stepper) -> From:
                     return ends
         return otherwise(spans, states)
 
-    return otherwise if f.has_breaks else every
+    return otherwise if f.has_breaks or choice.method not in EXPLICIT else every
 
 
 def each(again: Callable[[tuple[float, float], Array], Array]) -> From:

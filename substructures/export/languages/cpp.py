@@ -1,11 +1,13 @@
 """C++17, a header: ``auto metric = name::metric(q, p)``, over ``double`` or any scalar with these functions.
 
-Lengths are part of the types; ``p`` has its defaults. Arrays are ``std::array``, row-major.
+Lengths are part of the types; ``p`` has its defaults. Arrays are ``std::array``, row-major. Constants are of the
+precision of ``float`` or ``double``, and doubles for scalars of other kinds.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
+from fractions import Fraction
 from math import isnan, prod
 from typing import ClassVar
 
@@ -16,7 +18,26 @@ from substructures.export.reference import Reference
 from substructures.expr.operations import Output, flat
 from substructures.printers.language import Listing, Piece
 
-_USING = ("sin", "cos", "tan", "asin", "acos", "atan", "atan2", "exp", "log", "sqrt", "abs", "pow")
+_USING = ("sin", "cos", "tan", "asin", "acos", "atan", "atan2", "exp", "log", "sqrt", "abs")
+
+_CONSTANTS = "using constant_of = std::conditional_t<std::is_floating_point_v<T>, T, double>;"
+#: what a header needs before its functions; unused ones are left out
+_HELPERS = {
+    "sign_of": (
+        "template <class T>",
+        "T sign_of(const T& v) {",
+        "    return v > T(0) ? T(1) : v < T(0) ? T(-1) : v;",
+        "}",
+    ),
+    "power_of": (
+        "template <class T>",
+        "T power_of(const T& v, int n) {",
+        "    using std::pow;",
+        "    if constexpr (std::is_floating_point_v<T>) return pow(v, T(n));",
+        "    else return pow(v, n);",
+        "}",
+    ),
+}
 
 
 class Cpp(C):
@@ -41,22 +62,25 @@ class Cpp(C):
         """A constant of the namespace."""
         return f"inline constexpr std::size_t {name} = {place};"
 
+    def number(self, value: Fraction) -> Piece:
+        """The nearest number of the precision."""
+        found = super().number(value)
+        return found if value < 0 else Piece(f"real({found.text})")
+
+    def pi(self) -> Piece:
+        """pi as a number: C++17 has no constant for it."""
+        return Piece(f"real({super().pi().text})")
+
     def power(self, a: Piece, n: int) -> Piece:
         """An integer power."""
-        return Piece(f"pow({a.text}, {n})")
-
-    def call(self, op: str, args: list[Piece]) -> Piece:
-        """A function of the scalars."""
-        if all(a.text[0].isdigit() for a in args):
-            args = [Piece(f"T({a.text})") for a in args]
-        return super().call(op, args)
+        return Piece(f"power_of({a.text}, {n})")
 
     @classmethod
     def file(cls, exported: Exported, functions: Iterable[list[str]], software: str) -> str:
         """A header."""
         name, p = exported.name, exported.interface.vectors["p"]
         lines = [*cls.commented(head(exported, cls.first, software, cls.executed, called)), "#pragma once", ""]
-        lines += ["#include <array>", "#include <cmath>", "#include <cstddef>", "#include <limits>", ""]
+        lines += [f"#include <{header}>" for header in ("array", "cmath", "cstddef", "limits", "type_traits")] + [""]
         lines += [f"namespace {name} {{", "", *cls.constants(exported)]
         values = ("std::numeric_limits<double>::quiet_NaN()" if isnan(x) else repr(x) for x in p.defaults)
         lines += ["// the default values of the parameters", "template <class T = double>"]
@@ -66,9 +90,10 @@ class Cpp(C):
         ]
         lines += ["}", ""]
         body = [line for each in functions for line in (*each, "")]
-        sign = "    return v > T(0) ? T(1) : v < T(0) ? T(-1) : v;"
-        if any("sign_of(" in line for line in body):
-            lines += ["template <class T>", "T sign_of(const T& v) {", sign, "}", ""]
+        lines += ["// what constants are beside a scalar", "template <class T>", _CONSTANTS, ""]
+        for needed, helper in _HELPERS.items():
+            if any(f"{needed}(" in line for line in body):
+                lines += [*helper, ""]
         return "\n".join([*lines, *body, "}", ""])
 
     def define(self, listing: Listing) -> list[str]:
@@ -86,7 +111,8 @@ class Cpp(C):
         ]
         if self.function.arguments[-1] == "p":
             arguments[-1] += " = defaults<T>()"
-        body = [f"using std::{f};" for f in _USING] + [f"(void){v};" for v in self.function.arguments]
+        body = ["using real [[maybe_unused]] = constant_of<T>;", *(f"using std::{f};" for f in _USING)]
+        body += [f"(void){v};" for v in self.function.arguments]
         body.append(f"{result} result{{}};")
         body += [f"[[maybe_unused]] auto& {v} = result{f'.{v}' if many else ''};" for v, _ in arrays]
         body += [f"const T& {name} = {element};" for name, element in self.named(self.texts(listing))]

@@ -107,7 +107,7 @@ export class Panel {
             return this.sign * output[0];
         };
         if (second < 0 || second === first) {
-            this.canvas.replaceChildren(line((x) => value(x), this.ranges[first], here, short));
+            this.canvas.replaceChildren(line((x) => value(x), this.ranges[first], here, short, this.canvas.clientWidth));
         } else {
             const [drawn, largest] = map(value, this.ranges[first], this.ranges[second]);
             const told = `${this.names[first]} to the right, ${this.names[second]} upwards; red up to ${short(largest)}, blue below 0`;

@@ -1,30 +1,31 @@
 // An entry over one coordinate as a line, over two as a map.
 import { svg } from "./svg.js";
 
-const [WIDTH, HEIGHT, LEFT, BOTTOM] = [480, 160, 56, 20];
+const [WIDEST, HEIGHT, LEFT, BOTTOM] = [480, 160, 56, 20];
 const POINTS = 240;
 const CELLS = 64;
 
-/** A line of value(x) over [low, high], with a mark at x = here. */
-export function line(value, [low, high], here, format) {
+/** A line of value(x) over [low, high], with a mark at x = here; as wide as there is room, so that it is read. */
+export function line(value, [low, high], here, format, room) {
+    const width = Math.min(WIDEST, room);
     const xs = Array.from({ length: POINTS + 1 }, (_, k) => low + ((high - low) * k) / POINTS);
     const ys = xs.map(value);
     const finite = ys.filter(Number.isFinite);
     let [least, most] = [Math.min(...finite), Math.max(...finite)];
     if (!(most - least > 1e-12 * Math.max(Math.abs(most), Math.abs(least)))) [least, most] = [least - 1, most + 1];
-    const x = (at) => LEFT + ((WIDTH - LEFT - 8) * (at - low)) / (high - low);
+    const x = (at) => LEFT + ((width - LEFT - 8) * (at - low)) / (high - low);
     const y = (at) => 8 + ((HEIGHT - BOTTOM - 8) * (most - at)) / (most - least);
     const points = xs.map((at, k) => `${x(at).toFixed(1)},${y(ys[k]).toFixed(1)}`).join(" ");
-    const drawn = svg("svg", { viewBox: `0 0 ${WIDTH} ${HEIGHT}`, role: "img", "aria-label": "value over the coordinate", class: "line" });
+    const drawn = svg("svg", { viewBox: `0 0 ${width} ${HEIGHT}`, role: "img", "aria-label": "value over the coordinate", class: "line" });
     drawn.append(
-        svg("line", { x1: LEFT, x2: WIDTH - 8, y1: y(Math.min(most, Math.max(least, 0))), y2: y(Math.min(most, Math.max(least, 0))), class: "axis" }),
+        svg("line", { x1: LEFT, x2: width - 8, y1: y(Math.min(most, Math.max(least, 0))), y2: y(Math.min(most, Math.max(least, 0))), class: "axis" }),
         svg("line", { x1: x(here), x2: x(here), y1: 8, y2: HEIGHT - BOTTOM, class: "here" }),
         svg("polyline", { points, class: "curve" }),
         svg("circle", { cx: x(here), cy: y(value(here)), r: 3, class: "mark" }),
         svg("text", { x: LEFT - 4, y: 14, class: "end" }, format(most)),
         svg("text", { x: LEFT - 4, y: HEIGHT - BOTTOM, class: "end" }, format(least)),
         svg("text", { x: LEFT, y: HEIGHT - 4 }, format(low)),
-        svg("text", { x: WIDTH - 8, y: HEIGHT - 4, class: "end" }, format(high)),
+        svg("text", { x: width - 8, y: HEIGHT - 4, class: "end" }, format(high)),
     );
     return drawn;
 }
