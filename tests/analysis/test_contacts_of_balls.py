@@ -266,6 +266,40 @@ def test_a_floating_base_lands_on_its_foot() -> None:
     assert ours.series["contact_forces"][-1, :, 0].sum() == pytest.approx(5 * G, rel=1e-4)
 
 
+#: legs of a quadruped: port of the trunk, side, front
+LEGS = {
+    "fl": ("front_left", 1, 1),
+    "fr": ("front_right", -1, 1),
+    "rl": ("rear_left", 1, -1),
+    "rr": ("rear_right", -1, -1),
+}
+
+
+def test_a_quadruped_lands_and_stands() -> None:
+    """Of the catalogue, with its legs held by springs and dampers: its floor carries its weight."""
+    trunk, leg = derive("quadruped-trunk-floating"), derive("quadruped-leg")
+    instances = [
+        {"name": name, "substructure": "leg", "at": f"t.{port}", "parameters": {"side": side, "front": front}}
+        for name, (port, side, front) in LEGS.items()
+    ]
+    tree = {"name": "q", "gravity": [0, 0, -G], "instances": [{"name": "t", "substructure": "trunk"}, *instances]}
+    model = couple(tree, {"t": trunk, **dict.fromkeys(LEGS, leg)})
+    bent = np.array([0, 0.7, -1.4] * 4)
+    hold = {
+        f"tau.{name}": f"-150*({name} - ({angle})) - 10*{name}'"
+        for name, angle in zip(model.positions[7:], bent.tolist(), strict=True)
+    }
+    feet = [Contact(name, f"{name}.toe", friction=0.7) for name in LEGS]
+    start = [0, 0, 0.35, *Rotation.from_euler("ZYX", (0.5, 0.02, 0.02)).as_quat(scalar_first=True), *bent]
+    motion = simulate(model, start, (0, 1), inputs=hold, kind=TreeMotion(contacts=feet), outputs=Outputs(count=5))
+    assert (motion.status, motion.is_right) == ("finished", True)
+    assert {event.name for event in motion.events if event.kind == "impact"} == set(LEGS)
+    assert np.abs(motion.qd[-1]).max() < 1e-3
+    # the metric of the velocities of the base is its mass
+    weight = G * evaluate(model, "metric", start)["metric"][0, 0]
+    assert motion.series["contact_forces"][-1, :, 0].sum() == pytest.approx(weight, rel=1e-3)
+
+
 @pytest.mark.parametrize("seed", [1, 7])
 def test_rows_and_what_rates_make_of_them_are_slopes(seed: int) -> None:
     """Rows against differences of the gap, and the bias against those of velocities, by displacements of bodies."""
