@@ -15,7 +15,6 @@ from substructures.analysis.equations.nonholonomic.velocity_constraints import (
     Rolling,
     constraints_of,
 )
-from substructures.analysis.motion.ball_motion import simulate_balls
 from substructures.analysis.motion.friction.transmitted import with_reactions
 from substructures.analysis.motion.integrators.fixed_step import FixedStep
 from substructures.analysis.motion.limits import with_limits
@@ -31,15 +30,16 @@ from substructures.analysis.motion.problems.kinds import (
 )
 from substructures.analysis.motion.problems.output_times import OutputTimes
 from substructures.analysis.motion.problems.outputs import Outputs
-from substructures.analysis.motion.problems.problem import Integrator, MotionProblem
+from substructures.analysis.motion.problems.problem import Integrator
 from substructures.analysis.motion.problems.signals import Signal, Table
 from substructures.analysis.motion.problems.start import Start, StateVector
 from substructures.analysis.motion.rolling import RollingProblem, simulate_rolling
-from substructures.analysis.motion.simulation import TreeProblem, simulate_tree
+from substructures.analysis.motion.simulation import simulate_tree
 from substructures.analysis.motion.trajectory import Trajectory
+from substructures.analysis.motion.tree_problem import TreeProblem
 from substructures.errors import Fault, InvalidArgument
 from substructures.tree.document import require_undriven, require_unignored
-from substructures.tree.given.ties import require_chains, require_untied
+from substructures.tree.given.ties import require_untied
 from substructures.tree.model import Model
 
 __all__ = [
@@ -135,7 +135,7 @@ def simulate(
     elif isinstance(kind, ClosedMotion):
         motion = simulate_closed(ClosedProblem(**given, kind=kind))
     else:
-        motion = _tree_motion(given, kind if isinstance(kind, TreeMotion) else TreeMotion())
+        motion = simulate_tree(TreeProblem(**given, kind=kind if isinstance(kind, TreeMotion) else TreeMotion()))
     found = with_limits(model, parameters, motion)
     if outputs.reactions is not None:
         found = with_reactions(model, outputs.reactions, found, given["start"])
@@ -144,16 +144,6 @@ def simulate(
         moved = tuple(kind.prescribed) if isinstance(kind, ClosedMotion) else ()
         found = with_powers(model, outputs.powers, found, given["start"], moved, integrator.drift_limit)
     return found
-
-
-def _tree_motion(given: Mapping[str, Any], kind: TreeMotion) -> Trajectory:
-    """Of a tree without closures."""
-    balls = given["model"].balls
-    if not balls:
-        return simulate_tree(TreeProblem(**given, kind=kind))
-    if kind.contacts:
-        require_chains(balls, "leave 'contacts' out")
-    return simulate_balls(MotionProblem(**given), kind)
 
 
 def _usual(model: Model) -> MotionKind:

@@ -14,12 +14,11 @@ from substructures.analysis.equations.kernels import program_kernel
 from substructures.analysis.equations.nonholonomic.quasi_velocities import QuasiVelocities
 from substructures.analysis.equations.nonholonomic.solved import ACCELERATION as QUASI_ACCELERATION
 from substructures.analysis.equations.nonholonomic.solved import RATES, solved
-from substructures.analysis.motion.ball_motion import kernel_in_rates
 from substructures.analysis.motion.conditions import DYNAMICS, Conditions, read_conditions, state_names
 from substructures.analysis.motion.problems.kinds import ConstrainedMotion, TreeMotion, usual_kind
 from substructures.analysis.motion.problems.signals import Table
 from substructures.analysis.motion.problems.start import Start
-from substructures.analysis.motion.right_hand_side import ACCELERATION, POWER, forward_kernel
+from substructures.analysis.motion.right_hand_side import ACCELERATION, CHANGES, POWER, forward_kernel
 from substructures.array import Array
 from substructures.compile import Kernel, compile_program
 from substructures.documents import escape
@@ -32,8 +31,6 @@ from substructures.quantities.numbers.defaults import with_input_defaults
 from substructures.quantities.numbers.states import StateInput, given_values, read_states
 from substructures.tree.model import Model
 
-#: output of equations with ball joints
-CHANGES = "position_rates"
 #: by name: a number, (M,) one for each member, or (inputs) an expression in coordinates, velocities, parameters and t
 Given = Mapping[str, Any]
 
@@ -210,8 +207,6 @@ class KernelRates:
 
 def _kernels(members: Members, folder: Path | None) -> tuple[Kernel, Kernel | None]:
     """Of accelerations and power, and of q' where that is no part of the state."""
-    if members.model.balls:
-        return kernel_in_rates(members.model, members.zero, folder), None
     if members.equations is None:
         return forward_kernel(members.model, members.zero, folder), None
     source = solved(members.equations, members.zero)

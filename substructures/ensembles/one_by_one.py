@@ -8,15 +8,15 @@ from typing import Any
 
 import numpy as np
 
-from substructures.analysis.motion.ball_motion import simulate_balls
 from substructures.analysis.motion.integrators.progress import ProgressReport
 from substructures.analysis.motion.problems.contacts import contacts_of
 from substructures.analysis.motion.problems.events import Event
 from substructures.analysis.motion.problems.kinds import TreeMotion
 from substructures.analysis.motion.problems.output_times import OutputGrid, OutputTimes
 from substructures.analysis.motion.problems.problem import Integrator
-from substructures.analysis.motion.simulation import TreeProblem, simulate_tree
+from substructures.analysis.motion.simulation import simulate_tree
 from substructures.analysis.motion.trajectory import Crossing, Trajectory
+from substructures.analysis.motion.tree_problem import TreeProblem
 from substructures.analysis.verdict import Check
 from substructures.array import Array
 from substructures.ensembles.columns import MotionColumns, statistics
@@ -95,7 +95,7 @@ class OneByOne:
                 events=self.events,
                 kind=self.kind,
             )
-            return simulate_balls(problem, self.kind) if self.members.model.balls else simulate_tree(problem)
+            return simulate_tree(problem)
         except InvalidInput as error:
             if any(fault.code not in OF_ONE for fault in error.faults):
                 raise

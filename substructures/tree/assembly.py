@@ -85,7 +85,7 @@ def assemble(spec: TreeSpec, parts: Mapping[str, Part]) -> Assembly:
     ball and floating joints.
     """
     assembly = unchecked(spec, parts)
-    given = {name: getattr(spec, name) for name in ("driven", "ignored", "velocity_constraints", "contacts")}
+    given = {name: getattr(spec, name) for name in ("driven", "ignored", "velocity_constraints")}
     for name, some in (given | {"closures": assembly.cuts}).items():
         if some:
             require_chains(assembly.balls, f"take the tree without '{name}'", f"/{name}")

@@ -26,9 +26,9 @@ from substructures import (
     evaluate,
     simulate,
 )
-from substructures.analysis.motion.ball_motion import equations_in_rates
+from substructures.analysis.motion.right_hand_side import forward_dynamics
 from substructures.analysis.motion.writers import to_csv
-from substructures.certificate.derived.model_formulas import simulated_in_rates
+from substructures.certificate.derived.model_formulas import simulated
 from substructures.errors import InvalidInput, VerificationFailed
 from substructures.expr.program import Program
 from substructures.quantities.certificate import certified
@@ -273,8 +273,8 @@ def test_what_is_not_known_is_refused() -> None:
 def test_wrong_equations_are_found() -> None:
     """Each number of the program of a motion, doubled."""
     model = satellite()
-    right = equations_in_rates(model)
-    expected, found = simulated_in_rates(model.positions, model.balls), 0
+    right = forward_dynamics(model)
+    expected, found = simulated(model.positions, model.balls), 0
     for i, operation in enumerate(right.operations):
         if operation[0] == "rat":
             wrong = (

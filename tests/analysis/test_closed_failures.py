@@ -11,7 +11,8 @@ from simulated import simulated
 from substructures import InvalidInput
 from substructures.analysis.motion.problems.output_times import OutputTimes
 from substructures.analysis.motion.problems.start import Start
-from substructures.analysis.motion.simulation import TreeProblem, simulate_tree
+from substructures.analysis.motion.simulation import simulate_tree
+from substructures.analysis.motion.tree_problem import TreeProblem
 from substructures.analysis.simulate import Closed, Event, Linear, Table, simulate
 
 from .closed_motions import METHODS, right

@@ -17,7 +17,6 @@ from simulated import simulated
 
 from substructures import Definition, Model, TreeSpec, couple, derive
 from substructures.analysis.closed.reductions import Projected
-from substructures.analysis.motion.ball_motion import BallRates
 from substructures.analysis.motion.conditions import DYNAMICS, read_conditions
 from substructures.analysis.motion.integrators.compiled_steps import EXPLICIT, CompiledStepper, compiled_stepper
 from substructures.analysis.motion.integrators.fixed_step import compiled_rk4, rk4
@@ -247,12 +246,12 @@ def test_ball_joints(method: str, monkeypatch: pytest.MonkeyPatch) -> None:
     request: Plain = {"q": q, "qd": given, "span": (0, 0.5), "times": [0, 0.3, 0.5], "inputs": inputs}
     request |= {"parameters": values, "method": method, "relative_tolerance": 1e-8, "absolute_tolerance": 1e-8}
     made = list[bool]()
-    compiled = BallRates.compiled
-    monkeypatch.setattr(BallRates, "compiled", lambda f: made.append((x := compiled(f)) is not None) or x)
+    compiled = RightHandSide.compiled
+    monkeypatch.setattr(RightHandSide, "compiled", lambda f: made.append((x := compiled(f)) is not None) or x)
     ours = simulated(model, **request)
     assert made
     assert all(made)
-    monkeypatch.setattr(BallRates, "compiled", lambda _: None)
+    monkeypatch.setattr(RightHandSide, "compiled", lambda _: None)
     plain = simulated(model, **request)
     assert (ours.status, ours.is_right, ours.steps) == (plain.status, plain.is_right, plain.steps)
     for one, two in ((ours.q, plain.q), (ours.qd, plain.qd), (ours.series["work"], plain.series["work"])):

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 from closed_trees import tree_model
-from contact_models import BALL, PLACED, G, block, box, disc, of, on_moving_plate, point
+from contact_models import BALL, FREE, PLACED, G, block, box, disc, of, on_moving_plate, point
 from run_code import require_clean_sources
 
 from substructures import Model, couple, derive, simulate
@@ -27,6 +27,7 @@ from fmpy.validation import validate_fmu  # noqa: E402
 from .fmu_instances import instance  # noqa: E402
 
 TARGETS = {"3.0": "fmu", "2.0": "fmu2"}
+FLOATING = {"type": "floating"}
 CORNERS = ("c00", "c01", "c10", "c11")
 KINDS = ("ModelExchange", "CoSimulation")
 IMPACTS = ("contact.impacts", "contact.impact_energy", "contact.last_impact")
@@ -35,6 +36,7 @@ IMPACTS = ("contact.impacts", "contact.impact_energy", "contact.last_impact")
 def exported_of(model: Model) -> Exported:
     interface = interface_of_model(model, "demo", "sha256:1")
     names = (CONTACTS, "forward_dynamics", "kinetic_energy", "potential_energy")
+    names += ("position_rates",) if model.balls else ()
     made = exported_model(
         Sources(model), interface, names, "demo", packed=True, others=contact_programs(model, CONTACTS)
     )
@@ -76,10 +78,10 @@ def carried() -> Model:
     return on_moving_plate("0.04*sin(8*t)", "0.03*sin(8*t)")
 
 
-def corners(friction: str, restitution: str = "0") -> Model:
+def corners(friction: str, restitution: str = "0", joint: dict[str, Any] = FREE) -> Model:
     """A box in space with four corners below."""
     law = {"friction": friction, "restitution": restitution}
-    return of("b", box(), [0, 0, -G], contacts=[{"name": c, "point": f"b.{c}", **law} for c in CORNERS])
+    return of("b", box(joint), [0, 0, -G], contacts=[{"name": c, "point": f"b.{c}", **law} for c in CORNERS])
 
 
 def rim(friction: str) -> Model:
@@ -119,6 +121,21 @@ MOTIONS: dict[str, tuple[Any, list[float], list[float], float, float]] = {
     "spun": (lambda: corners("0.3"), [0, 0, 0.15, 0, 0, 0], [1, 0.5, 0, 4, 0, 0], 0.8, 1e-7),
     "falling": (lambda: corners("0.3", "0.3"), [0, 0, 0.3, 0.3, 0.2, 0.4], [1, 0.5, 0, 0, 0, 0], 0.32, 1e-6),
     "ring": (lambda: rim("0.4"), [0, 0, 0.1, 0, 0, 0], [0.4, 0, 0, 0, 0, 0], 0.3, 1e-7),
+    # by quaternions
+    "turning": (
+        lambda: corners("0.3", "0.3", FLOATING),
+        [0, 0, 0.3, 0.9, 0.1, 0.3, 0.3],
+        [1, 0.5, 0, 1, -2, 0.5],
+        0.36,
+        1e-6,
+    ),
+    "quaternions": (
+        lambda: corners("0.3", "0", FLOATING),
+        [0, 0, 0.15, 0.8, 0, 0, 0.6],
+        [1, 0.5, 0, 0, 0, 4],
+        0.8,
+        1e-7,
+    ),
     "rolling": (lambda: corners("0.8"), [0, 0, 0.3, 0.3, 0.2, 0.4], [1, 0.5, 0, 0, 0, 0], 0.53, 1e-6),
 }
 
@@ -144,8 +161,8 @@ def test_it_moves_as_here(made: Any, name: str, version: str) -> None:
     model, path = made(name, version)
     _, q, qd, end, near = MOTIONS[name]
     assert validate_fmu(str(path)) == []
-    start = dict(zip(model.coordinates, q, strict=True))
-    start |= {f"{c}_d": x for c, x in zip(model.coordinates, qd, strict=True)}
+    start = dict(zip(model.positions, q, strict=True))
+    start |= {f"{c}_d" if c in model.positions else c: x for c, x in zip(model.coordinates, qd, strict=True)}
     ours = simulate(model, q, (0, end), qd=qd)
     hits = [event for event in ours.events if event.kind == "impact"]
     assert ours.is_right
@@ -265,5 +282,8 @@ def test_what_an_fmu_does_not_follow_is_refused() -> None:
 
 @pytest.mark.parametrize("compiler", ["gcc", "clang"])
 @pytest.mark.parametrize("version", TARGETS)
-def test_the_sources_compile_without_a_warning(made: Any, version: str, compiler: str, tmp_path: Path) -> None:
-    require_clean_sources(made("spun", version)[1], compiler, tmp_path)
+@pytest.mark.parametrize("name", ["spun", "turning"])
+def test_the_sources_compile_without_a_warning(
+    made: Any, name: str, version: str, compiler: str, tmp_path: Path
+) -> None:
+    require_clean_sources(made(name, version)[1], compiler, tmp_path)

@@ -180,3 +180,32 @@ def test_where_there_are_none(
     assert found.status_code == 422
     faults = {fault["pointer"]: fault["code"] for fault in found.json()["errors"]}
     assert faults.get(pointer) == code
+
+
+def test_bodies_that_turn_by_quaternions_have_contacts(client: TestClient) -> None:
+    """Of the tree, of an ensemble and in an FMU; `reactions` are refused as elsewhere."""
+    turns = {"bodies": [{**BALL["bodies"][0], "joint": {"type": "floating"}, "inertia": {"xx": 1, "yy": 2, "zz": 3}}]}
+    tree = {"name": "spun", "gravity": [0, 0, -9.81], "instances": [{"name": "b", "definition": {**BALL, **turns}}]}
+    made = client.post("/v1/trees", json=tree)
+    assert made.status_code == 201, made.text
+    state = {"q": [0, 0, 1, 1, 0, 0, 0], "qd": [0, 0, 0, 1, 2, 3]}
+    given = client.post("/v1/trees/spun/simulations", json=BODY | state)
+    assert (given.status_code, given.headers["Trajectory-Right"]) == (200, "true"), given.text
+    assert client.patch("/v1/trees/spun", json={"contacts": [FLOOR]}).status_code == 201
+    body = {name: x for name, x in BODY.items() if name != "contacts"} | state
+    found = client.post("/v1/trees/spun/simulations", json=body)
+    assert (found.status_code, found.headers["Trajectory-Right"]) == (200, "true"), found.text
+    answer = found.json()
+    assert len(answer["positions"]) == 7
+    for name in ("q", "qd", "events"):
+        assert answer[name] == given.json()[name]
+    many = client.post("/v1/trees/spun/ensembles", json=body | {"q": [state["q"]] * 2})
+    assert (many.status_code, many.json()["is_right"]) == (200, True), many.text
+    assert many.json()["q"][1][-1] == pytest.approx(answer["q"][-1], abs=1e-7)
+    packed = client.get("/v1/trees/spun/export?target=fmu")
+    assert packed.status_code == 200, packed.text
+    refused = client.post("/v1/trees/spun/simulations", json=body | {"reactions": True})
+    assert refused.json()["errors"][0]["pointer"] == "/reactions"
+    fixed = client.post("/v1/trees/spun/simulations", json=body | {"fixed_step": {"step": 0.01}})
+    assert fixed.json()["errors"][0]["code"] == "not-supported"
+    assert "<h2>Contacts</h2>" in client.get("/trees/spun").text

@@ -261,6 +261,20 @@ def test_motions_with_contacts_are_those_of_each_row() -> None:
     assert np.isnan(below.rows().columns.get("end", np.nan)).all()
 
 
+def test_motions_of_floating_bodies_have_contacts() -> None:
+    """The same bounce, of a body that spins by quaternions."""
+    body = {"name": "rod", "parent": "base", "joint": {"type": "floating"}, "mass": "m",
+            "inertia": {"xx": 1, "yy": 2, "zz": 3}}  # fmt: skip
+    template = {**SPRUNG["template"], "contacts": [{"name": "floor", "point": "a.rod", "restitution": "0.8"}]}
+    start = {"q": [0, 0, 1, 1, 0, 0, 0], "qd": [0, 0, 0, 1, 2, 3]}
+    columns = {"end": {"analysis": "simulation", "at": start, "span": [0, 1], "expression": "a.r_rod_z"}}
+    sweep = Sweep(SPRUNG, {"rod": {**ROD, "bodies": [body]}}, columns=columns, template=template)
+    found = sweep.rows().columns
+    fall = np.sqrt(2 / 9.81)
+    left = 1 - fall
+    assert found["end"] == pytest.approx(0.8 * 9.81 * fall * left - 9.81 / 2 * left**2, abs=1e-7)
+
+
 def test_motions_with_inputs_are_those_of_one_tree() -> None:
     drive = {"tau.a.q": "5*sin(3*t)"}
     motion = {"analysis": "simulation", "at": {"q": [0.4], "qd": [0.2], "inputs": drive}, "span": [0, 1]}

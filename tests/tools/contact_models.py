@@ -43,9 +43,11 @@ def block(width: float, height: float, mass: float = 2.0) -> dict[str, Any]:
     return plane_body(points, mass, mass * (width**2 + height**2) / 3)
 
 
-def box() -> dict[str, Any]:
+FREE = {"type": "free", "coordinate": ["x", "y", "z", "yaw", "pitch", "roll"]}
+
+
+def box(joint: dict[str, Any] = FREE) -> dict[str, Any]:
     """A box of 0.2 m, 0.1 m and 0.2 m that is free in space, with four corners below."""
-    joint = {"type": "free", "coordinate": ["x", "y", "z", "yaw", "pitch", "roll"]}
     inertia = {"xx": 0.02, "yy": 0.03, "zz": 0.04}
     places = {f"c{i}{j}": [0.2 * i - 0.1, 0.1 * j - 0.05, -0.1] for i in (0, 1) for j in (0, 1)}
     return {

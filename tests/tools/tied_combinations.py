@@ -99,10 +99,10 @@ coordinate that moves with another (`relations`), a free body below, a rod that 
 in the part, with `independent` coordinates (reduced level), a cart whose motion is given (`driven`) or whose momentum
 is (`ignored`), a linear velocity constraint, a point above the floor (`contacts`), a floating body below (`balls`).
 **no**: the request is refused with the code `has-closures`, `has-driven`, `has-ignored`, `has-velocity-constraints`,
-`has-contacts` or `has-balls`, and told what to take in its place. Formulas of the tree
-itself (`metric`, `christoffel`, `forces`, ...), evaluations of them and exports in languages take all kinds, and are
-those without velocity constraints and contacts; FMUs have both. In a tree of several kinds the `no` of one is the
-`no` of all; balls go with the reduced level, and with no other tie. Identification is of motions that are measured in
+`has-contacts` or `has-balls`, and told what to take in its place. Formulas of the tree itself (`metric`,
+`christoffel`, `forces`, ...), evaluations of them and exports in languages take all kinds, and are those without
+velocity constraints and contacts; FMUs have both. In a tree of several kinds the `no` of one is the `no` of all;
+balls go with the reduced level and contacts, and with no other tie. Identification is of motions that are measured in
 all coordinates: where some are `driven` or `ignored` it is that of the tree without, whose forces of the drives are
 measured, too. On closures and with velocity constraints motions tell fewer base parameters than formulas have:
 `excitations` and `identifications` find in numbers which. At the reduced level loops in closed form have base

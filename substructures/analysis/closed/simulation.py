@@ -210,7 +210,7 @@ def _judged(s: Constrained, problem: ClosedProblem, motion: IntegratedMotion, ra
         motion.status,
         motion.message,
         motion.steps,
-        in_order(crossings(problem.events, motion.found, s.n), told, _lost(motion, t, q, qd)),
+        in_order(crossings(problem.events, motion.found, slice(s.n, 2 * s.n)), told, _lost(motion, t, q, qd)),
         {"evaluations": float(motion.evaluations)},
         motion.cancelled,
         span,

@@ -170,7 +170,7 @@ def _judged(choices: VelocityChoices, problem: RollingProblem, motion: Integrate
         motion.status,
         message,
         motion.steps,
-        crossings(problem.events, [(k, t, choices.state(t, x)) for k, t, x in motion.found], n),
+        crossings(problem.events, [(k, t, choices.state(t, x)) for k, t, x in motion.found], slice(n, 2 * n)),
         {"evaluations": float(motion.evaluations)},
         motion.cancelled,
         span,

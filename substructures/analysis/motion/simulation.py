@@ -1,9 +1,9 @@
-"""Simulation of a tree without closures, judged by all its first integrals."""
+"""Simulation of a tree without closures, judged by all its first integrals, and by the norms of its quaternions."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from collections.abc import Mapping
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from time import perf_counter
@@ -17,15 +17,20 @@ from substructures.analysis.motion.contacts.deciding import DecidedContacts
 from substructures.analysis.motion.friction.dry_friction import DryMotion, friction_laws
 from substructures.analysis.motion.friction.dry_run import DryRun, integrate_dry, with_friction
 from substructures.analysis.motion.friction.loaded_friction import LoadedRightHandSide, with_loads
-from substructures.analysis.motion.integrators.compiled_steps import EXPLICIT
 from substructures.analysis.motion.integrators.fixed_step import march, require_no_stops, semi_implicit_euler
 from substructures.analysis.motion.integrators.integrated_motion import IntegratedMotion
 from substructures.analysis.motion.integrators.integration import IntegratorSettings, integrate
 from substructures.analysis.motion.integrators.progress import ProgressReport, share_of
 from substructures.analysis.motion.integrators.steppers import Stepper
+from substructures.analysis.motion.judges.balls import (
+    energies,
+    kept_lengths,
+    reached_in_rates,
+    told_with_lengths,
+    with_lengths,
+)
 from substructures.analysis.motion.judges.integrals import AlongMotion, integrals_along, judge
 from substructures.analysis.motion.judges.states import MotionStates, unbalanced
-from substructures.analysis.motion.problems.kinds import TreeMotion
 from substructures.analysis.motion.problems.problem import TAYLOR, MotionProblem
 from substructures.analysis.motion.resets import Accelerations, Resets, acting, simulate_with_resets
 from substructures.analysis.motion.right_hand_side import RightHandSide, is_definite
@@ -34,45 +39,18 @@ from substructures.analysis.motion.second_run import state_groups
 from substructures.analysis.motion.single_steps import at_once, careful
 from substructures.analysis.motion.taylor import require_taylor, taylor_stepper
 from substructures.analysis.motion.trajectory import Crossing, Trajectory, crossings, in_order
+from substructures.analysis.motion.tree_problem import TreeProblem
 from substructures.analysis.verdict import Check
 from substructures.array import Array
-from substructures.errors import InvalidArgument, InvalidInput
+from substructures.errors import InvalidInput
 from substructures.expr.interpret import interpret_in_blocks
 from substructures.mechanics.accelerations import definite_solve
 from substructures.quantities.numbers.conditioning import LEAST, MOST, OVERFLOW, RANGE, is_usable
-from substructures.quantities.numbers.limits import reached
 
-#: laws of friction that neither steps of a fixed size nor Taylor series take
-WHY_NOT = {
-    "exact": "joints that stick exactly need steps of any size",
-    "loaded": "friction by the load of joints is iterated",
-}
 SINGULAR = (
     "the metric is singular or not positive definite at the start: a massless body, or a joint at a singular angle "
     "(spherical and free joints: pitch = +-pi/2); change masses, inertias or the start"
 )
-
-
-@dataclass(frozen=True, kw_only=True)
-class TreeProblem(MotionProblem):
-    """A motion of a tree without closures, q'' = g^-1 (Q - Gamma q' q')."""
-
-    kind: TreeMotion = field(default_factory=TreeMotion)
-
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        if self.kind.friction in WHY_NOT and (self.integrator.fixed_step or self.integrator.method == TAYLOR):
-            message = f"{WHY_NOT[self.kind.friction]}: leave 'fixed_step' and the method Taylor out"
-            raise InvalidArgument.at("/friction", "not-supported", message)
-        if self.kind.contacts and self.integrator.method not in EXPLICIT:
-            words = ", ".join(f"'{method}'" for method in EXPLICIT)
-            message = f"contacts are followed by explicit steps of any size: take one of {words}"
-            place = "/method" if self.integrator.fixed_step is None else "/fixed_step"
-            raise InvalidArgument.at(place, "not-supported", message)
-        if self.kind.contacts and acting(self.events):
-            i = next(i for i, event in enumerate(self.events) if event.reset)
-            message = "events do not act beside contacts, which have impacts of their own: leave 'reset' out"
-            raise InvalidArgument.at(f"/events/{i}/reset", "not-supported", message)
 
 
 def simulate_tree(problem: TreeProblem) -> Trajectory:
@@ -80,8 +58,9 @@ def simulate_tree(problem: TreeProblem) -> Trajectory:
 
     ``series`` of the result, (K,) each: ``energy`` [J], momenta and other first integrals, ``power``
     [W], ``work`` [J], varying inputs under their names, and those of the problem; of k contacts ``gaps`` (K, k) [m] and
-    ``contact_forces`` (K, k, 3) [N]. What goes wrong on the way is a trajectory with status ``failed``, advice, and the
-    motion up to there. Raises InvalidInput (``has-closures``; pointers start with names of arguments of ``simulate``)
+    ``contact_forces`` (K, k, 3) [N]; with ball joints ``kinetic_energy``, ``potential_energy`` [J]. What goes wrong on
+    the way is a trajectory with status ``failed``, advice, and the motion up to there.
+    Raises InvalidInput (``has-closures``; pointers start with names of arguments of ``simulate``)
     and MissingValue.
     """
     conditions = tree_conditions(problem)
@@ -105,7 +84,7 @@ def _simulate(problem: TreeProblem, conditions: Conditions) -> Trajectory:
             return _failed(conditions, problem, str(error))
         raise
     # x = (q, q', W), W only where there is any power
-    x = np.concatenate([conditions.start, np.zeros(f.size - 2 * f.n)])
+    x = np.concatenate([conditions.start, np.zeros(f.size - len(conditions.start))])
     message = _unfit(conditions, problem, f, x)
     if message:
         return _failed(conditions, problem, message)
@@ -122,7 +101,7 @@ def _simulate(problem: TreeProblem, conditions: Conditions) -> Trajectory:
     # where every state says all of what comes after it
     is_plain = not isinstance(f, DecidedContacts) and problem.kind.friction != "exact"
     alone = at_once(f, careful(problem.integrator)) if is_plain else None
-    again = computed_again(problem, motion, state_groups(f.n, f.n), move, is_whole=is_whole, alone=alone)
+    again = computed_again(problem, motion, state_groups(f.m, f.n), move, is_whole=is_whole, alone=alone)
     f.leave()
     return replace(found, checks=(*found.checks, *instead, *again))
 
@@ -189,11 +168,12 @@ def _moved(
     told = share_of(span, progress)
     figures: dict[str, float] = {}
     if problem.integrator.fixed_step is not None:
-        motion, pace = march(f, semi_implicit_euler(f.n), x, span, outputs, problem.integrator.fixed_step, most, told)
+        euler = semi_implicit_euler(f.n, f.m, f.moved)
+        motion, pace = march(f, euler, x, span, outputs, problem.integrator.fixed_step, most, told)
         figures |= pace.figures
     else:
         settings = IntegratorSettings(_stepper(conditions, problem, f), most)
-        watches = conditions.watches(lambda _, y: y[: 2 * f.n], folder)
+        watches = conditions.watches(lambda _, y: y[: f.rates.stop], folder)
         breaks = conditions.breaks(span)
         if problem.kind.friction == "exact":
             motion = integrate_dry(_dry(conditions, f), x, span, outputs, settings, watches, breaks, told, DryRun())
@@ -210,19 +190,23 @@ def _moved(
     return motion, figures | {"evaluations": motion.evaluations, "seconds": perf_counter() - begin}
 
 
-def _dry(conditions: Conditions, f: RightHandSide) -> DryMotion:
-    return DryMotion(f, conditions, friction_laws(conditions.model, conditions.values))
-
-
 def _stepper(conditions: Conditions, problem: TreeProblem, f: RightHandSide) -> Stepper:
     if problem.integrator.method == TAYLOR:
         return taylor_stepper(conditions, problem.integrator.relative_tolerance, f.has_power)
     return problem.integrator.stepper()
 
 
+def _failed(conditions: Conditions, problem: MotionProblem, message: str) -> Trajectory:
+    """Only the start."""
+    t, q, qd = np.array([problem.span[0]]), conditions.q[None], conditions.qd[None]
+    model = problem.model
+    positions = model.positions if model.balls else ()
+    return Trajectory(model.coordinates, t, q, qd, status="failed", message=message, positions=positions)
+
+
 def _judged(
     conditions: Conditions,
-    problem: TreeProblem,
+    problem: MotionProblem,
     f: RightHandSide,
     motion: IntegratedMotion,
     figures: Mapping[str, float],
@@ -238,25 +222,27 @@ def _judged(
     along = AlongMotion.of(model, integrals, states)
     series = along.series
     more = _of_kind(series, conditions, f, motion, states, x, problem.drift_limit)
-    checks = judge(along, problem.drift_limit)
+    checks = [*judge(along, problem.drift_limit), *kept_lengths(model, t, x, problem.drift_limit)]
     if states.work is not None and f.has_power and "energy" in series:
         series["work"] = states.work
-    span = reached(t, x[:, : f.n], x[:, f.n : 2 * f.n])
-    t, x = t[results], x[results, : 2 * f.n]
+    series |= energies(along.sizes, states.qd) if model.balls else {}
+    span = reached_in_rates(model, t, x)
+    t, x = t[results], x[results, : f.rates.stop]
     return Trajectory(
         model.coordinates,
         t,
-        x[:, : f.n],
-        x[:, f.n :],
+        with_lengths(model, x[:, : f.m]),
+        x[:, f.m :],
         {name: values[results] for name, values in series.items()} | conditions.series_at(t, x),
         (*checks, *more),
         motion.status,
         motion.message,
         motion.steps,
-        in_order(crossings(problem.events, motion.found, model.dof), _told(conditions, f, motion)),
+        _told(conditions, problem, f, motion),
         figures,
         motion.cancelled,
         span,
+        positions=model.positions if model.balls else (),
     )
 
 
@@ -280,21 +266,26 @@ def _of_kind(
     return more
 
 
-def _told(conditions: Conditions, f: RightHandSide, motion: IntegratedMotion) -> Sequence[Crossing]:
-    """What contacts did, and joints with exact friction."""
+def _told(
+    conditions: Conditions, problem: MotionProblem, f: RightHandSide, motion: IntegratedMotion
+) -> tuple[Crossing, ...]:
+    """Events, what contacts did, and joints with exact friction."""
+    model, found = conditions.model, list[Crossing]()
     if isinstance(f, DecidedContacts):
-        return f.told
-    return motion.told(conditions.model.coordinates, _dry(conditions, f).laws) if isinstance(motion, DryRun) else ()
+        found = f.told
+    elif isinstance(motion, DryRun):
+        found = motion.told(model.coordinates, _dry(conditions, f).laws)
+    told = in_order(crossings(problem.events, motion.found, f.rates), found)
+    return tuple(told_with_lengths(model, event) for event in told)
 
 
 def _states(conditions: Conditions, f: RightHandSide, t: Array, x: Array) -> MotionStates:
-    n = f.n
-    values: dict[str, float | Array] = {**conditions.values, **conditions.inputs_at(t, x[:, : 2 * n])}
-    work = x[:, 2 * n] if f.has_power else np.zeros(len(t))
-    return MotionStates(t, x[:, :n], x[:, n : 2 * n], values, work)
+    """States x (K, m + n), or longer by their work, at times t (K,), with the values of all symbols."""
+    values: dict[str, float | Array] = {**conditions.values, **conditions.inputs_at(t, x[:, : f.rates.stop])}
+    work = x[:, -1] if f.has_power else np.zeros(len(t))
+    return MotionStates(t, x[:, : f.m], x[:, f.rates], values, work)
 
 
-def _failed(conditions: Conditions, problem: TreeProblem, message: str) -> Trajectory:
-    """Only the start."""
-    t, q, qd = np.array([problem.span[0]]), conditions.q[None], conditions.qd[None]
-    return Trajectory(problem.model.coordinates, t, q, qd, status="failed", message=message)
+def _dry(conditions: Conditions, f: RightHandSide) -> DryMotion:
+    """The same equations with joints that stick."""
+    return DryMotion(f, conditions, friction_laws(conditions.model, conditions.values))

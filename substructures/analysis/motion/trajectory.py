@@ -39,9 +39,9 @@ class Crossing:
         return told | {"after": {"q": q.tolist(), "qd": qd.tolist()}, "energy_change": self.energy_change}
 
 
-def crossings(events: Sequence[Event], found: Sequence[tuple[int, float, Array]], n: int) -> tuple[Crossing, ...]:
-    """Zeros that an integration found (event, time, state (q, q', ...)) as crossings."""
-    return tuple(Crossing(events[k].name, t, x[:n], x[n : 2 * n]) for k, t, x in found)
+def crossings(events: Sequence[Event], found: Sequence[tuple[int, float, Array]], rates: slice) -> tuple[Crossing, ...]:
+    """Zeros that an integration found (event, time, state (q, q', ...)) as crossings; ``rates``: where q' is."""
+    return tuple(Crossing(events[k].name, t, x[: rates.start], x[rates]) for k, t, x in found)
 
 
 def in_order(*found: Sequence[Crossing]) -> tuple[Crossing, ...]:

@@ -20,7 +20,7 @@ from dataclasses import replace
 import numpy as np
 
 from substructures.analysis.continuation import Change, Continuation
-from substructures.analysis.motion.simulation import TreeProblem
+from substructures.analysis.motion.tree_problem import TreeProblem
 from substructures.analysis.orbits.flow import EndsEarlyError
 from substructures.analysis.orbits.orbit import NOISE, BifurcationKind, Family, Orbit, OrbitBifurcation, Shooting
 from substructures.analysis.orbits.search import Search

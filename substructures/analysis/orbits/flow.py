@@ -15,7 +15,6 @@ from substructures.analysis.equations.nonholonomic.positions import at_rest
 from substructures.analysis.equations.nonholonomic.quasi_velocities import QuasiVelocities
 from substructures.analysis.equations.nonholonomic.solved import RATES_VARIATION, VARIATION
 from substructures.analysis.equations.perturbation import require_smooth
-from substructures.analysis.motion.ball_motion import simulate_balls
 from substructures.analysis.motion.integrators.integration import IntegratorSettings, integrate
 from substructures.analysis.motion.parameter_sensitivity import sensitivities, variation_of
 from substructures.analysis.motion.problems.events import Event
@@ -23,8 +22,9 @@ from substructures.analysis.motion.problems.kinds import usual_kind
 from substructures.analysis.motion.problems.output_times import OutputTimes
 from substructures.analysis.motion.problems.outputs import SensitivityOutputs
 from substructures.analysis.motion.rolling import RollingProblem, simulate_rolling
-from substructures.analysis.motion.simulation import TreeProblem, simulate_tree
+from substructures.analysis.motion.simulation import simulate_tree
 from substructures.analysis.motion.trajectory import Trajectory
+from substructures.analysis.motion.tree_problem import TreeProblem
 from substructures.analysis.motion.variation import variational
 from substructures.analysis.orbits.charts import chart_of
 from substructures.array import Array
@@ -44,7 +44,7 @@ def moved(problem: TreeProblem) -> Trajectory:
     if kind is not None:
         given = {name: getattr(problem, name) for name in ("model", "start", "times", "integrator", "events", "series")}
         return simulate_rolling(RollingProblem(**given, kind=kind))
-    return simulate_balls(problem, problem.kind) if problem.model.balls else simulate_tree(problem)
+    return simulate_tree(problem)
 
 
 def require_steady_ties(model: Model, what: str) -> None:

@@ -20,8 +20,8 @@ from substructures.analysis.motion.conditions import state_names
 from substructures.analysis.motion.problems.event_gaps import read_gaps
 from substructures.analysis.motion.problems.output_times import OutputGrid, OutputTimes
 from substructures.analysis.motion.resets import Resets
-from substructures.analysis.motion.simulation import TreeProblem
 from substructures.analysis.motion.trajectory import Crossing, Trajectory
+from substructures.analysis.motion.tree_problem import TreeProblem
 from substructures.analysis.orbits.flow import EndsEarlyError, Flow
 from substructures.array import Array
 from substructures.errors import InvalidArgument

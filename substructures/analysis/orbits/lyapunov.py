@@ -19,7 +19,7 @@ from substructures.analysis.motion.problems.output_times import OutputTimes
 from substructures.analysis.motion.problems.problem import Integrator
 from substructures.analysis.motion.problems.signals import Signal
 from substructures.analysis.motion.problems.start import Start, StateVector
-from substructures.analysis.motion.simulation import TreeProblem
+from substructures.analysis.motion.tree_problem import TreeProblem
 from substructures.analysis.orbits.flow import EndsEarlyError, Flow
 from substructures.analysis.verdict import Check, verdict
 from substructures.array import Array

@@ -17,7 +17,7 @@ from substructures.analysis.motion.problems.output_times import OutputTimes
 from substructures.analysis.motion.problems.problem import Integrator
 from substructures.analysis.motion.problems.signals import Signal
 from substructures.analysis.motion.problems.start import Start, StateVector
-from substructures.analysis.motion.simulation import TreeProblem
+from substructures.analysis.motion.tree_problem import TreeProblem
 from substructures.analysis.orbits.families import orbit_family
 from substructures.analysis.orbits.orbit import Family, Orbit, Section, Shooting, stability
 from substructures.analysis.orbits.search import Search

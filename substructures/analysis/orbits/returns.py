@@ -12,7 +12,7 @@ from substructures.analysis.equations.expressions import names, vector
 from substructures.analysis.motion.conditions import state_names
 from substructures.analysis.motion.problems.events import Event
 from substructures.analysis.motion.problems.output_times import OutputGrid, OutputTimes
-from substructures.analysis.motion.simulation import TreeProblem
+from substructures.analysis.motion.tree_problem import TreeProblem
 from substructures.analysis.orbits.flow import EndsEarlyError, Flow
 from substructures.analysis.orbits.orbit import Section
 from substructures.analysis.verdict import About, Check

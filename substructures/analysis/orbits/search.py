@@ -9,8 +9,8 @@ import numpy as np
 import scipy
 
 from substructures.analysis.motion.conditions import state_names
-from substructures.analysis.motion.simulation import TreeProblem
 from substructures.analysis.motion.trajectory import Trajectory
+from substructures.analysis.motion.tree_problem import TreeProblem
 from substructures.analysis.orbits.flow import EndsEarlyError, Flow
 from substructures.analysis.orbits.hybrid import HybridFlow
 from substructures.analysis.orbits.orbit import Orbit, Shooting, stability

@@ -19,8 +19,8 @@ from substructures.analysis.motion.problems.output_times import OutputGrid, Outp
 from substructures.analysis.motion.problems.problem import Integrator
 from substructures.analysis.motion.problems.signals import Signal
 from substructures.analysis.motion.problems.start import Start, StateVector
-from substructures.analysis.motion.simulation import TreeProblem
 from substructures.analysis.motion.trajectory import Trajectory
+from substructures.analysis.motion.tree_problem import TreeProblem
 from substructures.analysis.orbits.flow import moved, require_steady_ties
 from substructures.errors import InvalidInput
 from substructures.tree.model import Model

@@ -221,24 +221,20 @@ SERVED: dict[str, Expectation] = {
 }
 
 
-def simulated(m: ModelAt) -> Outputs:
-    """What simulations run on: accelerations, pivots D, and the power Q_a q'^a + V' of the forces without potential."""
+def simulated(positions: Sequence[str], balls: BallRows) -> Expectation:
+    """What simulations run on: accelerations, pivots D, and the power Q_a q'^a + V' of the forces without potential;
+    with ball joints before them the changes of the ``positions`` of states.
+    """
+    return partial(_simulated, positions, balls)
+
+
+def _simulated(positions: Sequence[str], balls: BallRows, m: ModelAt) -> Outputs:
     result = Outputs()
+    if balls:
+        changes = moved(m, balls, m.rates)
+        vector_of(result, "position_rates", [changes[name] for name in positions])
     vector_of(result, "forward_dynamics", m.accelerations())
     vector_of(result, "pivots", pivots(m.matrix("metric")))
-    power_of(result, "power", m)
-    return result
-
-
-def simulated_in_rates(positions: Sequence[str], balls: BallRows) -> Expectation:
-    """The same with ball joints: changes of the ``positions`` of states, accelerations, power."""
-    return partial(_simulated_in_rates, positions, balls)
-
-
-def _simulated_in_rates(positions: Sequence[str], balls: BallRows, m: ModelAt) -> Outputs:
-    result, changes = Outputs(), moved(m, balls, m.rates)
-    vector_of(result, "position_rates", [changes[name] for name in positions])
-    vector_of(result, "forward_dynamics", m.accelerations())
     power_of(result, "power", m, balls)
     return result
 

@@ -50,14 +50,17 @@ class Workspace:
 
     @cached_property
     def scope(self) -> Scope:
-        """What expressions may name: coordinates, velocities, parameters and the time, but no inputs."""
+        """What expressions may name: positions, velocities, parameters and the time, but no inputs."""
         scope, model = Scope(self.graph, symbols=self.symbols), self.model
         for s in model.program.symbols:
             if s.kind != "input":
                 scope.declare(s.name, s.kind, s.unit)
         for name, joint in zip(model.coordinates, model.joints, strict=True):
-            scope.declare(name, "coordinate", UNITS[joint])
+            if name in model.positions:
+                scope.declare(name, "coordinate", UNITS[joint])
             scope.declare(f"{name}'", "velocity", f"{UNITS[joint]}/s")
+        for name in model.positions:
+            scope.declare(name, "coordinate", model.state_units["q"][name])
         for name, parameter in model.parameters.items():
             scope.declare(name, "parameter", str(parameter.get("unit", "")))
         return scope

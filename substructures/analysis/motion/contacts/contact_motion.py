@@ -143,11 +143,11 @@ class ContactMotion(RightHandSide):
 
     def velocities(self, x: Array) -> Array:
         """G q' + G_0 (k, 3) at the state that was looked at."""
-        return np.asarray(self.G @ x[self.n : 2 * self.n] + self.rate)
+        return np.asarray(self.G @ x[self.rates] + self.rate)
 
     def power(self, x: Array) -> float:
         """Of the forces of the last evaluation on the coordinates, at the state that was looked at [W]."""
-        return float((self.force * (self.G @ x[self.n : 2 * self.n])).sum())
+        return float((self.force * (self.G @ x[self.rates])).sum())
 
     def free(self, t: float, x: Array) -> Array:
         """q'' (n,) without contact forces, a copy; gaps and rows are those of the state."""
@@ -196,15 +196,15 @@ class ContactMotion(RightHandSide):
         """The nearest state in the metric whose ``closed`` gaps (k,) are zero and stay so, and whose points ``still``
         do not slip; without these only positions change. It is looked at.
         """
-        x, n = x.copy(), self.n
+        x = x.copy()
         for _ in range(3):
             self.look(t, x)
             if np.abs(self.gap[closed]).max(initial=0) <= 1e-16:
                 break
-            x[:n] += self._change(self.G[closed, 0], -self.gap[closed])
+            x[: self.m] = self.moved(x[: self.m], self._change(self.G[closed, 0], -self.gap[closed]))
         if still is not None:
             rows, v = (self._kept(of, closed, still) for of in (self.G, self.velocities(x)))
-            x[n : 2 * n] += self._change(rows, -v)
+            x[self.rates] += self._change(rows, -v)
         self.look(t, x)
         return x
 

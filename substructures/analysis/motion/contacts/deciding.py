@@ -36,7 +36,7 @@ from substructures.analysis.motion.contacts.contact_motion import (
 from substructures.analysis.motion.contacts.pressing import NO_ROWS, turn
 from substructures.analysis.motion.friction.dry_rates import DYNAMICS
 from substructures.analysis.motion.integrators.tableaux import TABLEAUX
-from substructures.analysis.motion.right_hand_side import RightHandSide
+from substructures.analysis.motion.right_hand_side import CHANGES, RightHandSide
 from substructures.analysis.motion.trajectory import Crossing
 from substructures.array import Array
 from substructures.compile.machine import BoundCall
@@ -87,18 +87,17 @@ class DecidedContacts(ContactMotion):
             return rates
         rows, rubs = self.independent(), self.modes[:, 0] >= FULL
         rests = len(rows.kept) == self.n and (len(rows.inverse) > 0 or bool(self.tangents[rubs].any()))
-        call, (Q, bias) = self._dynamics
+        call, Q, bias, written = self._dynamics
         calls = tuple(each for each in (self._see, call) if isinstance(each, BoundCall))
         if rests or len(calls) < 2:
             return None
         slow = np.where(self.turns, STOPS * self.approach, 0.0)
         laws = np.column_stack((np.where(rubs, self.friction, 0.0), slow, self.modes[:, 1:3]))
-        velocities = self._x[0, self.n :]
+        velocities = self._x[0, self.rates]
         contacts = rows.pressing(self.rate.reshape(-1), velocities, laws)
         place = self.G.reshape(-1, self.n), self.bias.reshape(-1), Q, bias, rows.kept, np.arange(self.n)
-        saddle = SaddlePoint(self.g, *place, pressing=contacts, velocities=velocities, power=self._out[2])
-        # its own: zeros among what kernels write are not written again
-        return replace(rates, calls=(*rates.calls, *calls), written=np.zeros((1, self.n)), saddle=saddle)
+        saddle = SaddlePoint(self.g, *place, self._first, contacts, velocities, self._out[2])
+        return replace(rates, calls=(*rates.calls, *calls), written=written, saddle=saddle)
 
     def evaluate(self, t: float, x: Array) -> tuple[Array, Array, float]:
         """(q'', pivots of the metric, power), in machine code where that may be."""
@@ -117,21 +116,24 @@ class DecidedContacts(ContactMotion):
         def second() -> Array:
             """With these ways."""
             found[:] = [run.rates(t, x)]
-            return found[0][self.n : 2 * self.n]
+            return found[0][self.rates]
 
         turn(contacts.laws[:, 2:], self.modes[:, 0] == STARTS, self.G, self.bias, second)
         self.independent().forces(contacts, self.force)
         ways = np.where(self.turns[:, None], self.ways(self.velocities(x)), contacts.laws[:, 2:])
         self.force[:, 1:] -= contacts.laws[:, :1] * self.force[:, :1] * ways
-        return found[0][self.n : 2 * self.n], self._out[1][0], float(found[0][-1])
+        return found[0][self.rates], self._out[1][0], float(found[0][-1])
 
     @cached_property
-    def _dynamics(self) -> tuple[Callable[[], None], list[Array]]:
-        """What is called for the metric, forces and what depends on velocities, and the last two."""
-        sides = [np.zeros((1, self.n)) for _ in range(2)]
-        out = dict(zip(DYNAMICS, (self.g[None], *sides), strict=True))
+    def _dynamics(self) -> tuple[Callable[[], None], Array, Array, Array]:
+        """What is called for the metric, forces and what depends on velocities, the last two, and changes of q with
+        ball joints before q'', which is written elsewhere: zeros among what kernels write are not written again.
+        """
+        (Q, bias), written = np.zeros((2, 1, self.n)), np.zeros_like(self._written)
+        out = dict(zip(DYNAMICS, (self.g[None], Q, bias), strict=True))
+        out |= {CHANGES: written[:, : self.m]} if self._first else {}
         call = self.bound(program_kernel(self._model.program.select(list(out))), out)
-        return call, [x[0] for x in sides]
+        return call, Q[0], bias[0], written
 
     def decided(self, t: float, x: Array) -> tuple[Modes, Array]:
         """The modes at a state, and the state after impacts, on the contacts. Raises ArithmeticError."""
@@ -169,8 +171,8 @@ class DecidedContacts(ContactMotion):
 
     def _hit(self, t: float, x: Array, some: NDArray[np.int64]) -> Array:
         """The state after an impact of these contacts."""
-        n, qd, u = self.n, x[self.n : 2 * self.n], self.velocities(x)[some]
-        G = self.G[some]
+        n, m, v, u = self.n, self.m, self.rates, self.velocities(x)[some]
+        G, qd = self.G[some], x[v]
         rebound = np.array([self.contacts[i].restitution for i in some.tolist()])
         rebound[-u[:, 0] <= self.rest_velocity[some]] = 0.0
         b = u.copy()
@@ -179,18 +181,18 @@ class DecidedContacts(ContactMotion):
         cones = Cones(np.einsum("ian,njb->iajb", G, W), b, self.friction[some], self.tangents[some], self.yields(some))
         L = coulomb(cones)
         after = x.copy()
-        after[n : 2 * n] += np.einsum("njb,jb->n", W, L)
+        after[v] += np.einsum("njb,jb->n", W, L)
         # 1/2 (q'+ + q'-) . G^T L of each, and T of the metric
-        changes = 0.5 * np.einsum("ia,ian,n->i", L, G, after[n : 2 * n] + qd)
-        T, T_after = (0.5 * float(v @ self.g @ v) for v in (qd, after[n : 2 * n]))
-        after[2 * n] += changes.sum()
-        work = 0.5 * float((L * (u + G @ after[n : 2 * n] + self.rate[some])).sum())
+        changes = 0.5 * np.einsum("ia,ian,n->i", L, G, after[v] + qd)
+        T, T_after = (0.5 * float(u @ self.g @ u) for u in (qd, after[v]))
+        after[-1] += changes.sum()
+        work = 0.5 * float((L * (u + G @ after[v] + self.rate[some])).sum())
         self.impacts.append(Impact(t, work, T_after - T - changes.sum(), T, cones.violation(L)))
         for i, impulse, change in zip(some.tolist(), L, changes.tolist(), strict=True):
             if impulse[0] > LIGHT * np.abs(L).max():
                 name, told = self.contacts[i].name, tuple(impulse.tolist())
-                state = x[:n].copy(), qd.copy()
-                ends = after[:n].copy(), after[n : 2 * n].copy()
+                state = x[:m].copy(), qd.copy()
+                ends = after[:m].copy(), after[v].copy()
                 self.told.append(Crossing(name, t, *state, ends, change, "impact", told))
         self.look(t, after)
         return after
@@ -236,7 +238,7 @@ class DecidedContacts(ContactMotion):
 
     def _tell(self, t: float, x: Array, before: Array) -> None:
         """Contacts that lift off, and those that begin to stick or to slip."""
-        state = x[: self.n].copy(), x[self.n : 2 * self.n].copy()
+        state = x[: self.m].copy(), x[self.rates].copy()
         for contact, was, now in zip(self.contacts, before.tolist(), self.modes[:, 0].tolist(), strict=True):
             if was >= STICK > now:
                 self.told.append(Crossing(contact.name, t, *state, kind="lift_off"))

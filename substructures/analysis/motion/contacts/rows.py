@@ -117,11 +117,12 @@ def _rows(f: Workspace, kinematics: Mapping[str, Entries], contact: Contact) -> 
 
 
 def _along(f: Workspace, row: Sequence[Expr]) -> Expr:
-    """(d_b G_a) q'^a q'^b, and what else changes with the time."""
-    rates, time = [f.velocity_symbol(a) for a in range(f.n)], f.time if f.model.driven else {}
+    """(d_b G_a) q'^a q'^b, and what else changes with the time; of ball joints along p' = R v, Q' = 1/2 Q (0, w)."""
+    rates = [f.velocity_symbol(a) for a in range(f.n)]
+    changes = f.moved(rates) | (f.time if f.model.driven else {})
     velocity = f.graph.sum(x * v for x, v in zip(row, [*rates, f.graph.one], strict=True))
-    (slopes,) = gradient([velocity], [*f.model.coordinates, *time])
-    return f.graph.sum(x * v for x, v in zip(slopes, [*rates, *time.values()], strict=True))
+    (slopes,) = gradient([velocity], list(changes))
+    return f.graph.sum(x * v for x, v in zip(slopes, changes.values(), strict=True))
 
 
 def _when(f: Workspace, text: str | None, pointer: str) -> Expr:

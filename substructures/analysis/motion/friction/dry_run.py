@@ -18,6 +18,10 @@ from substructures.array import Array
 
 #: so many pieces, one after the other, of less than this share of the span mean that the motion is stuck
 STUCK, LEAST = 50, 1e-9
+SINGULAR = (
+    "the metric is singular: spherical and free joints are at pitch = +-pi/2, where 'ball' and 'floating' go on, or a "
+    "body has no mass"
+)
 ADVICE = "joints stop and break away without end: raise 'max_steps', or take the smooth law of friction ('regularised')"
 
 
@@ -131,8 +135,8 @@ def integrate_dry(
     while True:
         try:
             f.signs, x = f.decided(t, x)
-        except ArithmeticError as error:
-            run.undecided(t, x, f.signs, str(error))
+        except (ArithmeticError, np.linalg.LinAlgError) as error:
+            run.undecided(t, x, f.signs, SINGULAR if isinstance(error, np.linalg.LinAlgError) else str(error))
             return run
         run.since.append(t)
         run.starts.append(x)

@@ -12,7 +12,7 @@
 
 #include "complementarity.h"
 
-enum { K = FMU_CONTACTS, N = FMU_NQ };
+enum { K = FMU_CONTACTS, M = FMU_NQ, N = FMU_NV };
 static const double FAST = 1e-4, APPROACH = 1e-2, CREEP = 1e-3, REST = 1e-6, TOUCHING = 1e-9, BELOW = 1e-6, EDGE = 1e-9;
 static const double STOPS = 1e-2, GOES = 2.0, LIGHT = 1e-11, NONE = 1e-11, SLOW = 1e-11, DRIFT = 1e-9, LEAST = 1e-300;
 
@@ -48,14 +48,14 @@ static int tangents(int i)
 
 void contacts_look(const Given *at, const double *x, Seen *s)
 {
-    fmu_contacts(at->t, x, x + N, at->u, at->p, s->gap, &s->rows[0][0][0], &s->rate[0][0], &s->bias[0][0], s->acts,
+    fmu_contacts(at->t, x, x + M, at->u, at->p, s->gap, &s->rows[0][0][0], &s->rate[0][0], &s->bias[0][0], s->acts,
                  &s->metric[0][0]);
 }
 
 static double velocity(const Seen *s, const double *x, int i, int r)
 {
     double sum = s->rate[i][r];
-    for (int a = 0; a < N; ++a) sum += s->rows[i][r][a] * x[N + a];
+    for (int a = 0; a < N; ++a) sum += s->rows[i][r][a] * x[M + a];
     return sum;
 }
 
@@ -204,24 +204,33 @@ int contacts_drifted(const Contacts *c, const Given *at, const double *x)
     return 0;
 }
 
-/* dq (N,) with J dq = wanted, least in the metric, is added; 0, or 1 */
-static int change(const Seen *s, int m, double J[][N], const double *wanted, double *x)
+/* d (N,) with J d = wanted, least in the metric; 0, or 1 */
+static int change(const Seen *s, int m, double J[][N], const double *wanted, double *d)
 {
     double W[N * ROWS], A[ROWS * ROWS], yields[ROWS], found[ROWS];
+    for (int a = 0; a < N; ++a) d[a] = 0.0;
     if (m == 0) return 0;
     if (weighed(s, m, J, W)) return 1;
     product(m, J, W, A);
     for (int i = 0; i < m; ++i) yields[i] = A[i * m + i];
     if (solve_least(m, A, wanted, yields, found)) return 1;
     for (int a = 0; a < N; ++a)
-        for (int j = 0; j < m; ++j) x[a] += W[a * m + j] * found[j];
+        for (int j = 0; j < m; ++j) d[a] += W[a * m + j] * found[j];
     return 0;
+}
+
+/* q comes where a small displacement d (N,) leads: by q' at these rates, as quaternions turn */
+static void displace(const Given *at, double *x, const double *d)
+{
+    double rates[M], second[N], unused[1];
+    fmu_dynamics(at->t, x, d, at->u, at->p, rates, second, unused);
+    for (int a = 0; a < M; ++a) x[a] += rates[a];
 }
 
 /* the nearest state whose closed gaps are zero and, where ``still`` is there, stay so and do not slip; it is seen */
 static int land(const Given *at, double *x, const int *closed, const int *still, Seen *s)
 {
-    double J[ROWS][N], wanted[ROWS];
+    double J[ROWS][N], wanted[ROWS], d[N];
     int m;
     for (int round = 0; round < 3; ++round) {
         double worst = 0.0;
@@ -234,7 +243,8 @@ static int land(const Given *at, double *x, const int *closed, const int *still,
             worst = fmax(worst, fabs(s->gap[i]));
         }
         if (worst <= 1e-16) break;
-        if (change(s, m, J, wanted, x)) return 1;
+        if (change(s, m, J, wanted, d)) return 1;
+        displace(at, x, d);
     }
     if (still != NULL) {
         m = 0;
@@ -244,7 +254,8 @@ static int land(const Given *at, double *x, const int *closed, const int *still,
                 memcpy(J[m], s->rows[i][r], sizeof J[m]);
                 wanted[m++] = -velocity(s, x, i, r);
             }
-        if (change(s, m, J, wanted, x + N)) return 1;
+        if (change(s, m, J, wanted, d)) return 1;
+        for (int a = 0; a < N; ++a) x[M + a] += d[a];
     }
     contacts_look(at, x, s);
     return 0;
@@ -279,14 +290,14 @@ static int hit(Contacts *c, double t, double *x, int k, const int *some, const S
         memcpy(G[3 * j], s->rows[i], sizeof s->rows[0]);
     }
     if (cones_of(s, k, some, G, &cones) || coulomb(&cones, L) || weighed(s, 3 * k, G, W)) return 1;
-    memcpy(before, x + N, sizeof before);
+    memcpy(before, x + M, sizeof before);
     for (int j = 0; j < 3 * k; ++j)
-        for (int a = 0; a < N; ++a) x[N + a] += W[a * 3 * k + j] * L[j];
+        for (int a = 0; a < N; ++a) x[M + a] += W[a * 3 * k + j] * L[j];
     for (int j = 0; j < k; ++j) largest = fmax(largest, fabs(L[3 * j]));
     for (int j = 0; j < k; ++j) {
         if (L[3 * j] > LIGHT * largest) c->impacts += 1.0, c->last = t;
         for (int r = 3 * j; r < 3 * j + 3; ++r)
-            for (int a = 0; a < N; ++a) c->energy += 0.5 * (before[a] + x[N + a]) * G[r][a] * L[r];
+            for (int a = 0; a < N; ++a) c->energy += 0.5 * (before[a] + x[M + a]) * G[r][a] * L[r];
     }
     return 0;
 }
@@ -295,8 +306,8 @@ static int hit(Contacts *c, double t, double *x, int k, const int *some, const S
 static int hold(Contacts *c, const Given *at, const double *x, int k, const int *some, const int *still, const Seen *s)
 {
     Cones cones;
-    double F[ROWS][N], p[ROWS], w[ROWS], free[N], force[K][3], rates[2 * N], size, largest = 0.0, most_b = 0.0;
-    fmu_dynamics(at->t, x, x + N, at->u, at->p, rates, free, rates + N);
+    double F[ROWS][N], p[ROWS], w[ROWS], free[N], force[K][3], rates[M], unused[1], size, largest = 0.0, most_b = 0.0;
+    fmu_dynamics(at->t, x, x + M, at->u, at->p, rates, free, unused);
     for (int j = 0; j < k; ++j) {
         int i = some[j];
         double v[2] = {0.0, 0.0}, *d = c->way[i];
@@ -376,7 +387,7 @@ static int touching(Contacts *c, const Given *at, double *x, int *touch, int *co
 int contacts_decide(Contacts *c, const Given *at, double *x)
 {
     Seen s;
-    double start[2 * N];
+    double start[M + N];
     int touch[K], closed[K], still[K], some[K], was[K], comes = 0, count, k = 0;
     memcpy(start, x, sizeof start);
     for (int i = 0; i < K; ++i) was[i] = c->mode[i] >= STICK;

@@ -27,8 +27,8 @@ typedef struct {
 
 /* what is seen of them at a state */
 typedef struct {
-    double gap[FMU_CONTACTS], rows[FMU_CONTACTS][3][FMU_NQ], rate[FMU_CONTACTS][3], bias[FMU_CONTACTS][3];
-    double acts[FMU_CONTACTS], metric[FMU_NQ][FMU_NQ];
+    double gap[FMU_CONTACTS], rows[FMU_CONTACTS][3][FMU_NV], rate[FMU_CONTACTS][3], bias[FMU_CONTACTS][3];
+    double acts[FMU_CONTACTS], metric[FMU_NV][FMU_NV];
 } Seen;
 
 typedef struct {
