@@ -17,7 +17,7 @@ from simulated import simulated
 from substructures import Model
 from substructures.analysis.equations import kernels
 from substructures.analysis.motion.trajectory import Trajectory
-from substructures.analysis.simulate import ClosedMotion, Event, FixedStep, Integrator, Outputs, simulate
+from substructures.analysis.simulate import ClosedMotion, Event, FixedStep, Outputs, simulate
 from substructures.analysis.verdict import Check
 from substructures.compile import Kernel
 from substructures.expr.program import Program
@@ -85,13 +85,6 @@ def test_all_momenta_of_a_free_body() -> None:
     for kind in ("linear", "angular"):
         for k, axis in enumerate("xyz"):
             assert_stated(stated(motion, f"{kind}_momentum.{axis}"), found[kind][:, k])
-
-
-def test_taylor() -> None:
-    pytest.importorskip("heyoka", reason="heyoka is in the test extra")
-    model = catalogue_model("acrobot")
-    motion = simulate(model, [1.2, 0], (0, 5), integrator=Integrator(method="Taylor"), outputs=Outputs(step=0.02))
-    assert_energy_is_stated(model, motion)
 
 
 def test_states_of_events_are_judged() -> None:

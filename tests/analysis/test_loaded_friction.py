@@ -163,7 +163,7 @@ def test_what_is_refused(joint: str, load: Plain, pointer: str, code: str) -> No
 
 def test_what_it_does_not_go_with() -> None:
     pair = block(0.7, coefficient="mu")
-    for given in ({"fixed_step": FixedStep(0.1)}, {"method": "Taylor"}, {"geodesic": True}, {"prescribed": {"x.x": 0}}):
+    for given in ({"fixed_step": FixedStep(0.1)}, {"geodesic": True}, {"prescribed": {"x.x": 0}}):
         with pytest.raises(InvalidArgument) as caught:
             loaded(pair, [0], (0, 1), **given)
         assert caught.value.faults[0].code == "not-supported"

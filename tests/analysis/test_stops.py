@@ -8,13 +8,13 @@ import numpy as np
 import pytest
 from random_trees import Plain, model_of
 
-from substructures import InvalidInput, Model
+from substructures import Model
 from substructures.analysis.control.cost_gradient import cost_gradient
 from substructures.analysis.control.problem import ControlProblem, Cost
 from substructures.analysis.equations.first_integrals import first_integrals
 from substructures.analysis.motion.parameter_sensitivity import sensitivities
 from substructures.analysis.motion.problems.outputs import SensitivityOutputs
-from substructures.analysis.simulate import ClosedMotion, Event, Integrator, Outputs, simulate
+from substructures.analysis.simulate import ClosedMotion, Event, Outputs, simulate
 from substructures.analysis.stability.equilibria import equilibria
 from substructures.quantities.numbers.evaluation import evaluate
 from substructures.quantities.numbers.limits import Limits
@@ -162,10 +162,3 @@ def test_every_kind_of_motion_tells_of_its_limits() -> None:
         assert [w["code"] for w in motion.warnings] == ["limits-left"]
     unknown = simulate(model, [0.5], (0, 0.1), qd=[0.0])
     assert [w["code"] for w in unknown.warnings] == ["limits-unknown"]
-
-
-def test_a_series_does_not_see_a_stop() -> None:
-    """Taylor's method would go through it: |x| is x or -x for the whole of a step."""
-    pytest.importorskip("heyoka", reason="heyoka is in the test extra")
-    with pytest.raises(InvalidInput, match="no Taylor series everywhere"):
-        simulate(slide({"stiffness": 100}), [0.0], (0, 3), qd=[1.0], integrator=Integrator(method="Taylor"))

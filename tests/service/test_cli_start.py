@@ -22,7 +22,7 @@ from substructures.documents import write_json
 from substructures.sweeps.columns import ANALYSES as OF_SWEEPS
 from substructures.sweeps.document import AnalysisColumn
 
-HEAVY = {"fastapi", "sqlalchemy", "numpy", "scipy", "sympy", "pydantic", "llvmlite", "httpx2", "heyoka"}
+HEAVY = {"fastapi", "sqlalchemy", "numpy", "scipy", "sympy", "pydantic", "llvmlite", "httpx2"}
 
 
 def test_help_imports_nothing_heavy(capfd: pytest.CaptureFixture[str]) -> None:
@@ -49,7 +49,7 @@ def test_an_interrupt_while_it_starts_is_no_traceback(tmp_path: Path) -> None:
 
 
 def test_a_server_starts_without_what_few_requests_need() -> None:
-    late = {"alembic", "distributed", "heyoka", "pandas", "pint", "pyarrow", "scipy.linalg", "scipy.optimize", "sympy"}
+    late = {"alembic", "distributed", "pandas", "pint", "pyarrow", "scipy.linalg", "scipy.optimize", "sympy"}
     late |= MOTIONS | {
         "substructures.analysis.stability",
         "substructures.analysis.control",

@@ -29,7 +29,6 @@ OPTIONAL = {
     "psycopg": "PostgreSQL",
     "distributed": "Dask clusters",
     "pyarrow": "Arrow streams",
-    "heyoka": "Taylor series",
     "usd-core": "USD files",
     "ziglang": "FMUs for other systems",
 }

@@ -193,7 +193,7 @@ class WithPowers(WithReactions):
 class SimulationRequest(WithPowers):
     """q'' = g^-1 (Q - Gamma q' q') of a tree without closures."""
 
-    method: Literal["DOP853", "RK45", "RK23", "Radau", "BDF", "LSODA", "Taylor"] = "DOP853"
+    method: Literal["DOP853", "RK45", "RK23", "Radau", "BDF", "LSODA"] = "DOP853"
     fixed_step: FixedStep | None = None
     friction: Literal["regularised", "exact", "loaded"] = Field(
         "regularised",

@@ -30,7 +30,7 @@ from substructures.analysis.motion.limits import with_limits
 from substructures.analysis.motion.problems.kinds import ConstrainedMotion, usual_kind
 from substructures.analysis.motion.problems.output_times import OutputTimes
 from substructures.analysis.motion.problems.outputs import SensitivityOutputs
-from substructures.analysis.motion.problems.problem import TAYLOR, Integrator, MotionProblem
+from substructures.analysis.motion.problems.problem import Integrator, MotionProblem
 from substructures.analysis.motion.problems.signals import Signal
 from substructures.analysis.motion.problems.start import Start, StateVector
 from substructures.analysis.motion.second_run import accurate, halves, second_run
@@ -98,7 +98,7 @@ def sensitivities(
 
     With ``outputs.of_start`` also the series ``d.start`` (K, 2n, 2n), dx/dx_0. The other arguments are those of
     :func:`substructures.analysis.simulate.simulate`; inputs are numbers, tables or expressions in t alone, the method
-    is any but Taylor and FixedStep.
+    is any but FixedStep.
 
     With ball joints x = (dq, dv) of derivatives are displacements and rotation vectors in the axes of bodies, by the
     names of rates, as of a linearisation.
@@ -174,7 +174,7 @@ def _require_closed(equations: QuasiVelocities, by: Sequence[str]) -> None:
 def require_plain(conditions: Conditions, integrator: Integrator) -> None:
     """Raises InvalidArgument for what has no place in the variational equations."""
     faults = []
-    if integrator.method == TAYLOR or integrator.fixed_step is not None:
+    if integrator.fixed_step is not None:
         faults.append(Fault("/method", "not-supported", "sensitivities are computed by the other methods"))
     named = {s.name for s in conditions.expressions.symbols if s.kind != "time"}
     if named:

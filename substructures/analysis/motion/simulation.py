@@ -21,7 +21,6 @@ from substructures.analysis.motion.integrators.fixed_step import march, require_
 from substructures.analysis.motion.integrators.integrated_motion import IntegratedMotion
 from substructures.analysis.motion.integrators.integration import IntegratorSettings, integrate
 from substructures.analysis.motion.integrators.progress import ProgressReport, share_of
-from substructures.analysis.motion.integrators.steppers import Stepper
 from substructures.analysis.motion.judges.balls import (
     energies,
     kept_lengths,
@@ -31,13 +30,12 @@ from substructures.analysis.motion.judges.balls import (
 )
 from substructures.analysis.motion.judges.integrals import AlongMotion, integrals_along, judge
 from substructures.analysis.motion.judges.states import MotionStates, unbalanced
-from substructures.analysis.motion.problems.problem import TAYLOR, MotionProblem
+from substructures.analysis.motion.problems.problem import MotionProblem
 from substructures.analysis.motion.resets import Accelerations, Resets, acting, simulate_with_resets
 from substructures.analysis.motion.right_hand_side import RightHandSide, is_definite
 from substructures.analysis.motion.second_judges import computed_again
 from substructures.analysis.motion.second_run import state_groups
 from substructures.analysis.motion.single_steps import at_once, careful
-from substructures.analysis.motion.taylor import require_taylor, taylor_stepper
 from substructures.analysis.motion.trajectory import Crossing, Trajectory, crossings, in_order
 from substructures.analysis.motion.tree_problem import TreeProblem
 from substructures.analysis.verdict import Check
@@ -66,8 +64,6 @@ def simulate_tree(problem: TreeProblem) -> Trajectory:
     conditions = tree_conditions(problem)
     if problem.integrator.fixed_step is not None:
         require_no_stops(problem.events)
-    elif problem.integrator.method == TAYLOR:
-        require_taylor(list(conditions.curves), problem.integrator.max_step)
     if acting(problem.events):
         resets = Resets(problem, conditions, partial(_accelerations, conditions, problem))
         return simulate_with_resets(problem, resets, lambda p: _simulate(p, tree_conditions(p)))
@@ -172,7 +168,7 @@ def _moved(
         motion, pace = march(f, euler, x, span, outputs, problem.integrator.fixed_step, most, told)
         figures |= pace.figures
     else:
-        settings = IntegratorSettings(_stepper(conditions, problem, f), most)
+        settings = IntegratorSettings(problem.integrator.stepper(), most)
         watches = conditions.watches(lambda _, y: y[: f.rates.stop], folder)
         breaks = conditions.breaks(span)
         if problem.kind.friction == "exact":
@@ -182,18 +178,12 @@ def _moved(
         elif isinstance(f, DecidedContacts):
             motion = again(f, x, span, outputs, settings)
         else:
-            if turning and problem.integrator.method != TAYLOR:
+            if turning:
                 watches = [*watches, *f.corners(span[0], x, folder)]
             motion = integrate(f, x, span, outputs, settings, watches, breaks, told, f.enter)
             f.plain()
         f.leave()
     return motion, figures | {"evaluations": motion.evaluations, "seconds": perf_counter() - begin}
-
-
-def _stepper(conditions: Conditions, problem: TreeProblem, f: RightHandSide) -> Stepper:
-    if problem.integrator.method == TAYLOR:
-        return taylor_stepper(conditions, problem.integrator.relative_tolerance, f.has_power)
-    return problem.integrator.stepper()
 
 
 def _failed(conditions: Conditions, problem: MotionProblem, message: str) -> Trajectory:

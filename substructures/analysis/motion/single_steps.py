@@ -20,7 +20,7 @@ from substructures.analysis.motion.integrators.fixed_step import FixedStep
 from substructures.analysis.motion.integrators.integrated_motion import IntegratedMotion
 from substructures.analysis.motion.integrators.integration import Function
 from substructures.analysis.motion.integrators.steppers import Stepper
-from substructures.analysis.motion.problems.problem import TAYLOR, Integrator
+from substructures.analysis.motion.problems.problem import Integrator
 from substructures.analysis.motion.right_hand_side import RightHandSide
 from substructures.analysis.motion.second_run import LEAST, ROUNDING, TIGHTER
 from substructures.analysis.verdict import About, Check
@@ -104,7 +104,7 @@ def _spread(count: int, most: int) -> list[int]:
 def careful(choice: Integrator, length: float | None = None) -> Integrator:
     """Other tolerances, by a method that begins at full order; for a way of this ``length`` at least two steps."""
     factor = TIGHTER if choice.relative_tolerance >= LEAST else 1 / TIGHTER
-    like = {TAYLOR: "DOP853", "BDF": "Radau", "LSODA": "Radau"}
+    like = {"BDF": "Radau", "LSODA": "Radau"}
     method = "DOP853" if isinstance(choice.method, FixedStep) else like.get(choice.method, choice.method)
     return replace(
         choice,

@@ -7,11 +7,11 @@ from dataclasses import dataclass, field
 from substructures.analysis.motion.integrators.compiled_steps import EXPLICIT
 from substructures.analysis.motion.integrators.steppers import METHODS
 from substructures.analysis.motion.problems.kinds import TreeMotion
-from substructures.analysis.motion.problems.problem import TAYLOR, MotionProblem
+from substructures.analysis.motion.problems.problem import MotionProblem
 from substructures.analysis.motion.resets import acting
 from substructures.errors import InvalidArgument
 
-#: laws of friction that neither steps of a fixed size nor Taylor series take
+#: laws of friction that steps of a fixed size do not take
 WHY_NOT = {
     "exact": "joints that stick exactly need steps of any size",
     "loaded": "friction by the load of joints is iterated",
@@ -28,8 +28,8 @@ class TreeProblem(MotionProblem):
         super().__post_init__()
         if self.model.balls:
             self._require_known_of_balls()
-        if self.kind.friction in WHY_NOT and (self.integrator.fixed_step or self.integrator.method == TAYLOR):
-            message = f"{WHY_NOT[self.kind.friction]}: leave 'fixed_step' and the method Taylor out"
+        if self.kind.friction in WHY_NOT and self.integrator.fixed_step:
+            message = f"{WHY_NOT[self.kind.friction]}: leave 'fixed_step' out"
             raise InvalidArgument.at("/friction", "not-supported", message)
         if self.kind.contacts and self.integrator.method not in EXPLICIT:
             words = ", ".join(f"'{method}'" for method in EXPLICIT)

@@ -63,8 +63,7 @@ def roughly_within(solver: Any) -> Callable[[Array], Array]:
     found = getattr(solver, "rough_output", solver.dense_output)()
     if hasattr(found, "t_min"):  # SciPy's
         return lambda times: np.asarray(found(times).T)
-    # Taylor's output writes into the same array again
-    return lambda times: np.array([np.array(found(t)) for t in times.tolist()])
+    return lambda times: np.array([found(t) for t in times.tolist()])
 
 
 class _Within:

@@ -17,18 +17,16 @@ from substructures.analysis.motion.problems.start import Start
 from substructures.errors import InvalidArgument
 from substructures.tree.model import Model
 
-TAYLOR = "Taylor"
-
 
 @dataclass(frozen=True)
 class Integrator:
     """How a motion is computed, and how accurate it must be.
 
     ``method``: DOP853, RK45, RK23 and, of stiff equations, Radau, BDF for every model; LSODA (stiff) without closures;
-    Taylor (with the package heyoka) or a FixedStep (real time) for trees. Tolerances of a step, |error| <= absolute +
-    relative |x|; ``max_step`` [s], but of steps of a fixed size; ``max_steps``: so many accepted steps at most.
-    ``drift_limit``: relative drift of first integrals above which a result is not right. ``progress`` is told the
-    finished share of the span and stops by False; ``folder``: where compiled kernels are kept. Raises InvalidArgument.
+    a FixedStep (real time) for trees. Tolerances of a step, |error| <= absolute + relative |x|; ``max_step`` [s], but
+    of steps of a fixed size; ``max_steps``: so many accepted steps at most. ``drift_limit``: relative drift of first
+    integrals above which a result is not right. ``progress`` is told the finished share of the span and stops by
+    False; ``folder``: where compiled kernels are kept. Raises InvalidArgument.
     """
 
     method: str | FixedStep = "DOP853"
@@ -42,7 +40,7 @@ class Integrator:
 
     def __post_init__(self) -> None:
         if self.fixed_step is None:
-            one_of(self.method, "method", (*METHODS, TAYLOR))
+            one_of(self.method, "method", METHODS)
         elif self.max_step is not None:
             message = f"steps have the size {self.fixed_step.step:g} s here: leave 'max_step' ({self.max_step}) out"
             raise InvalidArgument.at("/max_step", "not-supported", message)
@@ -61,7 +59,7 @@ class Integrator:
         return self.method if isinstance(self.method, FixedStep) else None
 
     def stepper(self) -> Stepper:
-        """SciPy's, for all methods but Taylor's; steps of explicit ones are machine code where the function is."""
+        """SciPy's; steps of explicit ones are machine code where the function is."""
         tolerances = self.relative_tolerance, self.absolute_tolerance
         return compiled_stepper(str(self.method), *tolerances, self.max_step)
 
