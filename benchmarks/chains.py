@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 from substructures import Definition, TreeSpec
@@ -22,7 +23,7 @@ def general_rows(n: int) -> list[dict[str, Any]]:
     return [{"theta": f"alpha{i}", "d": f"a{i}", "tau": f"d{i}", "phi": f"phi{i}"} for i in range(1, n + 1)]
 
 
-def chain(name: str, rows: list[dict[str, Any]], first: int = 1) -> Definition:
+def chain(name: str, rows: list[dict[str, Any]], first: int = 1, loads: Sequence[Mapping[str, Any]] = ()) -> Definition:
     """Bodies link1, link2, ... with symbolic mass, mass centre and inertia tensor, and a port ``tip`` on the last."""
     bodies = []
     parameters: set[str] = {"g"}
@@ -37,7 +38,7 @@ def chain(name: str, rows: list[dict[str, Any]], first: int = 1) -> Definition:
         )
     port = {"name": "tip", "body": bodies[-1]["name"]}
     document = {"name": name, "parameters": {p: {} for p in sorted(parameters)}, "bodies": bodies, "ports": [port]}
-    return Definition.read(document)
+    return Definition.read(document | {"loads": list(loads)})
 
 
 def pieces(rows: list[dict[str, Any]], sizes: list[int]) -> list[Definition]:

@@ -1,10 +1,12 @@
 """Time of a simulation at equal accuracy, beside heyoka, SciPy, and MuJoCo.
 
-Spatial revolute chains fall freely for five seconds, the humanoid of the catalogue for half a second. Every engine is
-run with tighter and tighter settings; for each accuracy the fastest run that reaches it against a tight reference
-counts. SciPy's DOP853 calls our kernel, and of up to four links SymPy's lambdified function.
-``python -m benchmarks.simulate [--links N ...] [--humanoid] [--json FILE] [--picture FILE]``: the picture is the
-work-precision diagram, a panel for every mechanism.
+Spatial revolute chains fall freely for five seconds, the humanoid of the catalogue for half a second; with ``--stops``
+also against a stiff stop in every joint, chains for two seconds. A stop is smooth, -k w log(1 + exp((q - q_0)/w)), so
+that all can take it; MuJoCo does by a callback in Python. Every engine is run with tighter and tighter settings; for
+each accuracy the fastest run that reaches it against a tight reference counts. SciPy's DOP853 calls our kernel, and of
+up to four links that fall freely SymPy's lambdified function.
+``python -m benchmarks.simulate [--links N ...] [--humanoid] [--stops] [--json FILE] [--picture FILE]``: the picture is
+the work-precision diagram, a panel for every mechanism.
 """
 
 from __future__ import annotations
@@ -23,6 +25,7 @@ from scipy.integrate import solve_ivp
 from sympy.physics.mechanics import dynamicsymbols
 
 from benchmarks.chains import TENSOR, chain, general_rows, row_of
+from benchmarks.derive import humanoid
 from benchmarks.kane import derive_by_kane
 from benchmarks.mujoco_robots import Twin
 from benchmarks.report import keep, options
@@ -38,18 +41,23 @@ from substructures.compile import compile_program
 from substructures.tree.model import Model
 
 Array = Any
-SPAN, SHORT_SPAN = 5.0, 0.5
+SPAN, SPAN_OF_STOPS, SHORT_SPAN = 5.0, 2.0, 0.5
+#: coordinates of the body that is free
+FREE = 6
 TARGETS = (1e-4, 1e-6, 1e-8, 1e-10)
 GRAVITY = 9.81
 LEAST = 1e-12  # error that is looked at: the reference has some, too
 #: links of which SymPy's function is formed: of six it takes many minutes
 SYMPY_LINKS = 4
+#: of a stop: k [N m/rad] and w [rad]; q_0 [rad] of chains, and of the humanoid
+STIFFNESS, WIDTH = 2000, 0.002
+PLACE, NEAR = 1.0, 0.25
 
 
 @dataclass(frozen=True)
 class Mechanism:
     """What falls: its model, numbers of all parameters, the start, the time [s], and the same in MuJoCo, whose degree
-    of freedom k is our coordinate ``order[k]``; ``rows``: of a chain.
+    of freedom k is our coordinate ``order[k]``; ``rows``: of a chain that falls freely; ``stops`` (n,): their places.
     """
 
     title: str
@@ -61,14 +69,19 @@ class Mechanism:
     twin: mujoco.MjModel
     order: list[int]
     rows: list[dict[str, Any]] | None = None
+    stops: Array = None
 
     @property
     def x(self) -> Array:
         """The state at the start."""
         return np.concatenate([self.q, self.qd])
 
+    def start_of(self, f: Callable[[float, Array], Array]) -> Array:
+        """With the work of forces behind it, where a function has that, too."""
+        return np.concatenate([self.x, np.zeros(f.size - len(self.x))]) if isinstance(f, RightHandSide) else self.x
+
     @classmethod
-    def chain(cls, n: int) -> Mechanism:
+    def chain(cls, n: int, stops: bool = False) -> Mechanism:
         """Links of eight mass points each, coupled, parameters symbolic."""
         rng, rows = np.random.default_rng(7), general_rows(n)
         numbers: dict[str, float] = {"g": GRAVITY}
@@ -80,25 +93,57 @@ class Mechanism:
             theta = np.trace(J) * np.eye(3) - J
             numbers |= {f"m{i}": float(m.sum())} | {f"c{e}{i}": float(c) for e, c in zip("xyz", centre, strict=True)}
             numbers |= {f"I{e}{i}": float(theta["xyz".index(e[0]), "xyz".index(e[1])]) for e in TENSOR}
-        definition = chain("chain", rows)
+        loads = [
+            {"type": "joint", "coordinate": f"q{i}", "force": _stop(f"q{i}", PLACE)} for i in range(1, n + 1) if stops
+        ]
+        definition = chain("chain", rows, loads=loads)
         model = couple(row_of([definition]), {"p0": derive(definition)})
         twin = mujoco.MjModel.from_xml_string(_xml(n, numbers))
         given = {name: numbers[name.removeprefix("p0.")] for name in model.parameters}
         q, qd = rng.uniform(-0.5, 0.5, n), rng.uniform(-0.5, 0.5, n)
-        return cls(f"{n} links, {SPAN:g} s", model, given, q, qd, SPAN, twin, list(range(n)), rows)
+        span = SPAN_OF_STOPS if stops else SPAN
+        title = f"{n} links{', stiff stops' * stops}, {span:g} s"
+        more = {"stops": np.full(n, PLACE)} if stops else {"rows": rows}
+        return cls(title, model, given, q, qd, span, twin, list(range(n)), **more)
 
     @classmethod
-    def humanoid(cls) -> Mechanism:
-        """34 degrees of freedom, of a body that is free: without springs and stops, as it is in the catalogue."""
+    def humanoid(cls, stops: bool = False) -> Mechanism:
+        """34 degrees of freedom, of a body that is free: without springs, as it is in the catalogue."""
         robot, rng = robots()[1], np.random.default_rng(7)
         twin, n = Twin.of(robot), robot.model.dof
         given = {name: robot.numbers[name] for name in robot.model.parameters}
         q, qd = rng.uniform(-0.2, 0.2, n), rng.uniform(-0.5, 0.5, n)
         twin.model.opt.disableflags |= mujoco.mjtDisableBit.mjDSBL_CONTACT | mujoco.mjtDisableBit.mjDSBL_CONSTRAINT
         twin.model.opt.integrator = mujoco.mjtIntegrator.mjINT_RK4
-        return cls(
-            f"humanoid, {n} dof, {SHORT_SPAN:g} s", robot.model, given, q, qd, SHORT_SPAN, twin.model, twin.order
+        if not stops:
+            title = f"humanoid, {n} dof, {SHORT_SPAN:g} s"
+            return cls(title, robot.model, given, q, qd, SHORT_SPAN, twin.model, twin.order)
+        spec, library = humanoid()
+        turned = robot.model.coordinates[FREE:]
+        loads = [
+            {"name": f"stop{k}", "type": "joint", "coordinate": c, "force": _stop(c, NEAR)}
+            for k, c in enumerate(turned)
+        ]
+        model = couple(
+            spec.plain() | {"loads": loads}, {i.name: derive(library[str(i.substructure)]) for i in spec.instances}
         )
+        places = np.append(np.full(FREE, np.inf), np.full(len(turned), NEAR))
+        title = f"humanoid, {n} dof, stiff stops, {SHORT_SPAN:g} s"
+        return cls(title, model, given, q, qd, SHORT_SPAN, twin.model, twin.order, stops=places)
+
+
+def _stop(q: str, place: float) -> str:
+    return f"-{STIFFNESS}*{WIDTH}*log(1 + exp(({q} - {place})/{WIDTH}))"
+
+
+def _stopped(places: Array) -> Callable[[mujoco.MjModel, mujoco.MjData], None]:
+    """The same for MuJoCo, of all joints."""
+
+    def passive(_: mujoco.MjModel, data: mujoco.MjData) -> None:
+        with np.errstate(over="ignore"):
+            data.qfrc_passive[:] -= STIFFNESS * WIDTH * np.logaddexp(0.0, (data.qpos - places) / WIDTH)
+
+    return passive
 
 
 def _xml(n: int, v: dict[str, float]) -> str:
@@ -167,7 +212,7 @@ def without_verdict(system: Mechanism) -> list[Run]:
     def once(k: int) -> Array:
         settings = IntegratorSettings(compiled_stepper("DOP853", 10.0**-k, 10.0 ** -(k + 1)), 1_000_000)
         times = (0.0, system.span)
-        return integrate(f, system.x, times, np.array(times), settings).x[-1][: f.n]
+        return integrate(f, system.start_of(f), times, np.array(times), settings).x[-1][: f.n]
 
     return by_tolerance(once)
 
@@ -228,7 +273,8 @@ def in_scipy(f: Callable[[float, Array], Array], system: Mechanism) -> list[Run]
     n = len(system.q)
 
     def once(k: int) -> Array:
-        return solve_ivp(f, (0, system.span), system.x, "DOP853", rtol=10.0**-k, atol=10.0 ** -(k + 1)).y[:n, -1]
+        x, span = system.start_of(f), (0, system.span)
+        return solve_ivp(f, span, x, "DOP853", rtol=10.0**-k, atol=10.0 ** -(k + 1)).y[:n, -1]
 
     return by_tolerance(once)
 
@@ -236,6 +282,7 @@ def in_scipy(f: Callable[[float, Array], Array], system: Mechanism) -> list[Run]
 def in_mujoco(system: Mechanism) -> list[Run]:
     """Its Runge-Kutta method of fourth order, the loop over the steps inside MuJoCo."""
     data, place = mujoco.MjData(system.twin), np.argsort(system.order)
+    mujoco.set_mjcb_passive(None if system.stops is None else _stopped(system.stops[system.order]))
 
     def once(steps: int) -> Array:
         mujoco.mj_resetData(system.twin, data)
@@ -255,9 +302,10 @@ def evaluation_times(system: Mechanism, peers: dict[str, Callable[[float, Array]
     compile_program(source, list(source.outputs))
     times = {"compile_ms": (perf_counter() - start) * 1e3}
     for name, function in ({"ours": right_hand_side(system)} | peers).items():
+        x = system.start_of(function)
         start = perf_counter()
         for _ in range(2000):
-            function(0.0, system.x)
+            function(0.0, x)
         times[f"rhs_{name}_us"] = (perf_counter() - start) / 2000 * 1e6
     return times
 
@@ -316,10 +364,13 @@ def main() -> None:
     """Print the tables; with --json FILE write the figures."""
     parser = options(__doc__)
     parser.add_argument("--links", type=int, nargs="*", default=[3])
+    parser.add_argument("--stops", action="store_true")
     parser.add_argument("--humanoid", action="store_true")
     parser.add_argument("--picture", type=Path)
     arguments = parser.parse_args()
-    systems = [Mechanism.chain(n) for n in arguments.links] + [Mechanism.humanoid()] * arguments.humanoid
+    variants = (False, True) if arguments.stops else (False,)
+    systems = [Mechanism.chain(n, stops) for n in arguments.links for stops in variants]
+    systems += [Mechanism.humanoid(stops) for stops in variants if arguments.humanoid]
     found = {system.title: measured(system) for system in systems}
     keep({f"{title}, {name}": x for title, (some, _) in found.items() for name, x in some.items()}, arguments.json)
     if arguments.picture:
