@@ -375,7 +375,7 @@ def main() -> None:
     keep({f"{title}, {name}": x for title, (some, _) in found.items() for name, x in some.items()}, arguments.json)
     if arguments.picture:
         panels = [panel for _, panel in found.values()]
-        arguments.picture.write_text(plot("Accuracy against time: mechanisms that fall freely", panels))
+        arguments.picture.write_text(plot("Accuracy against time", panels))
 
 
 if __name__ == "__main__":
