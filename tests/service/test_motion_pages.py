@@ -107,6 +107,34 @@ def test_a_motion_with_inputs_events_and_reactions(browser: Any, address: str, t
 
 @in_browser
 @pytest.mark.deep
+def test_what_contacts_do_is_told_beside_events(browser: Any, address: str, trees: TestClient) -> None:
+    """A box without angles that falls to the floor: its motion plays, to its end."""
+    joint = {"type": "floating"}
+    inertia = dict.fromkeys(("xx", "yy", "zz"), "0.01")
+    box = {"name": "box", "parent": "base", "mass": 1, "joint": joint, "inertia": inertia}
+    part = {"name": "box", "bodies": [box], "ports": [{"name": "foot", "body": "box", "position": [0, 0, -0.1]}]}
+    floor = {"name": "floor", "point": "b.foot", "restitution": 0.5}
+    instances = [{"name": "b", "definition": part}]
+    made = {"name": "fall", "gravity": [0, 0, "-9.81"], "instances": instances, "contacts": [floor]}
+    assert trees.post("/v1/trees", json=made).status_code == 201
+    tab = opened(browser, address, "/trees/fall@1/motion?pose=0,0,0.5,1,0,0,0")
+    tab.page.click("#more summary")
+    tab.page.fill("#events", "b.r_box_z - 0.3")
+    tab.page.fill("#span", "0.6")
+    tab.page.click("#run")
+    events = computed(trees, "fall@1", ran(tab))["events"]
+    kinds = [event.get("kind") for event in events]
+    assert kinds[:2] == [None, "impact"]
+    tab.until("document.querySelectorAll('#happened button').length > 1")
+    told = tab.page.locator("#happened button").all_inner_texts()
+    assert told[0].startswith("b.r_box_z - 0.3: ")
+    assert told[1].startswith("floor: impact: ")
+    assert tab.page.locator("#ticks span").count() == len(events)
+    tab.close()
+
+
+@in_browser
+@pytest.mark.deep
 def test_a_motion_begins_in_the_state_of_the_page_before(browser: Any, address: str, trees: TestClient) -> None:
     tab = Tab(browser, address, "/trees/swing@1")
     tab.until(PLACE.format("view"))

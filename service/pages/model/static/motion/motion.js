@@ -11,7 +11,7 @@ import { locus } from "./locus.js";
 import { Modes } from "./modes.js";
 import { Player } from "./player.js";
 import { Plots } from "./plots.js";
-import { keep, request, restore, time } from "./request.js";
+import { happening, keep, request, restore, time } from "./request.js";
 import { save } from "./saving.js";
 import { groups, interpolated } from "./trajectory.js";
 
@@ -70,7 +70,7 @@ async function start({ kind, reference, ranges, joints, turns }) {
         get("saves").hidden = false;
         motion = (t) => interpolated(found, t, state, chart);
         place.dataset.run = JSON.stringify(body);
-        const named = found.events.map(({ name, t }) => ({ t, name: body.events[Number(name.slice(5)) - 1].quantity }));
+        const named = found.events.map((event) => ({ t: event.t, name: happening(body, event) }));
         const until = found.t[found.t.length - 1];
         if (view) within(until);
         player.load(until, time() ?? 0, named);

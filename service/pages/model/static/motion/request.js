@@ -31,6 +31,11 @@ export function request([q, qd]) {
     return { q, qd, span, count: COUNT, inputs: inputs(), parameters: changedParameters(), events, reactions };
 }
 
+/** What happens at an event of the answer: the quantity that was asked for comes there, or what a contact does. */
+export function happening({ events }, { name, kind }) {
+    return kind ? `${name}: ${kind.replace("_", " ")}` : events[Number(name.slice(5)) - 1].quantity;
+}
+
 /** The address holds all of a motion, and the time that is shown. */
 export function keep(t, body = null) {
     const address = pinned();
