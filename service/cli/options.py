@@ -65,20 +65,19 @@ class Server:
         if self.database is not None:
             if self.address not in (None, os.environ.get("SUBSTRUCTURES_SERVER")):
                 raise SettingsError("give either --server or --database")
-            with _serving(settings(database=self.database)) as client:
-                yield client
-            return
-        with at(self.address, self.key, self.key_from, self.is_other) as client:
+            found = _serving(settings(database=self.database))
+        else:
+            found = at(self.address, self.key, self.key_from, self.is_other)
+        with found as client:
             yield client
 
 
 @contextmanager
 def _serving(of_store: Settings) -> Iterator[Client]:
     """A client of a store, which is served to this process alone. Raises DatabaseError, MigrationError."""
-    # with all that serves, which other commands do not need
-    from service.server import background  # noqa: PLC0415
-    from service.store.keys import lent  # noqa: PLC0415
-    from substructures.client import Client  # noqa: PLC0415
+    from service.server import background  # noqa: PLC0415 -- with all that serves: few commands need it
+    from service.store.keys import lent  # noqa: PLC0415 -- with the database
+    from substructures.client import Client  # noqa: PLC0415 -- as for a server
 
     with ExitStack() as opened:
         with shipped() as told:

@@ -219,6 +219,18 @@ def test_inputs_events_and_series_name_positions() -> None:
     assert found.series["work"][-1] == pytest.approx(found.series["energy"][-1] - found.series["energy"][0], rel=1e-7)
 
 
+def test_events_have_quaternions_of_length_one() -> None:
+    """As results have them, however roughly they were integrated."""
+    rough = Integrator(relative_tolerance=1e-3, absolute_tolerance=1e-4)
+    outputs = Outputs(events=[Event("half", "x.q_hull_w")])
+    start, turning = [0, 0, 0, 1, 0, 0, 0, 0], [0, 0, 0, 0.4, 0.9, 0.2, 0]
+    found = simulate(satellite(), start, (0, 60), qd=turning, integrator=rough, outputs=outputs)
+    assert {check.name: check for check in found.checks}["quaternions"].relative > 1e-9
+    lengths = [np.linalg.norm(event.q[3:7]) for event in found.events]
+    np.testing.assert_allclose(lengths, np.ones(len(lengths)), rtol=1e-14)
+    assert lengths
+
+
 def test_two_balls_move_as_two_chains_of_angles() -> None:
     """Away from a pitch of 90 degrees, with springs, dampers and a force of the world."""
 
