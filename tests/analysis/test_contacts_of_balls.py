@@ -113,6 +113,21 @@ def test_a_spinning_ball_bounces_as_one_that_slides() -> None:
     np.testing.assert_allclose(hit.after[0], hit.q, atol=1e-12)
 
 
+def test_a_corner_that_begins_below_is_lifted_onto_the_floor() -> None:
+    """Least in the metric: beside the place the box turns, and its quaternion stays one."""
+    model, turn = box("floating"), Rotation.from_euler("ZYX", [0.3, 0.2, -0.5])
+    below = 5e-7
+    height = -turn.apply(SIGNS * HALF)[:, 2].min() - below
+    start = thrown(model, [0, 0, height], turn, [0, 0, 0], [0, 0, 0])
+    motion = fall(model, start, 0.02)
+    assert motion.is_right
+    assert np.abs(motion.series["gaps"].min(axis=1)).max() <= 1e-12
+    lifted = motion.q[0] - start[0]
+    assert 0 < lifted[2] < below
+    assert np.abs(lifted[3:]).max() > 1e-8
+    np.testing.assert_allclose(np.linalg.norm(motion.q[:, 3:], axis=1), 1, rtol=1e-14)
+
+
 @pytest.mark.parametrize(
     ("turn", "v", "w"),
     [((-0.4, 0.3, 1.0), (1.0, -0.5, 0.0), (-2, 1, 3)), ((1.2, -0.2, -0.6), (0.0, 1.0, -1.0), (0.5, -1.5, -4))],

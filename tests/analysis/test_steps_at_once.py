@@ -128,6 +128,11 @@ def test_a_result_that_is_not_reached(monkeypatch: pytest.MonkeyPatch) -> None:
     assert 0.5 <= found.t[-1] < 0.6
 
 
+def test_steps_that_bring_it_no_further_are_counted() -> None:
+    found = simulated(catalogue_model("acrobot"), **START, span=[0, 1], max_step=1e-13, max_steps=1000)
+    assert "200 steps brought it no further" in found.message
+
+
 def stepper_of(method: str) -> CompiledStepper:
     """Of the acrobot, from the start to 1 s."""
     model = catalogue_model("acrobot")
