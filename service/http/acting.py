@@ -81,8 +81,6 @@ class Act:
 
     async def within_time(self, task: Task, endpoint: Callable[[], Response]) -> Response:
         """The answer of an endpoint, or, where its work takes too long, of what is to be done instead."""
-        if task == "evaluate":
-            self._deadline.by_the_clock()
         threads = self.store.runtime.threads[task]
         return await self._deadline.within(partial(threads.submit, self.principal), endpoint)
 
@@ -205,7 +203,7 @@ SpooledActOf = Annotated[SpooledAct, Depends(spooled_act)]
 
 
 def deadline_of(store: Store, wait: float | None = None) -> Deadline:
-    """The time of a request by the clock; ``wait``: what whoever asks would wait."""
+    """The time of a request; ``wait``: what whoever asks would wait."""
     limit = store.settings.limits.sync_seconds
     return Deadline(SLOWNESS * limit, limit) if wait is None else Deadline(wait)
 

@@ -20,8 +20,11 @@ from typing import TypeVar
 from fastapi import Response
 from fastapi.concurrency import run_in_threadpool
 
+from service.processes.threads import ThreadCpuTime
+
 T = TypeVar("T")
 Submit = Callable[[Callable[[], Response]], Future[Response]]
+LOOK = 0.001  # seconds between looks at the time of a thread
 _log = logging.getLogger(__name__)
 
 
@@ -30,23 +33,23 @@ class GivenUp(Exception):
 
 
 class Deadline:
-    """``seconds`` from now, at ``due``; ``limit``: what is told of it, where that is another one."""
+    """``seconds`` from now, at ``due``; ``limit``: the CPU time of the thread that works, where that is less."""
 
     def __init__(self, seconds: float, limit: float | None = None) -> None:
         self.limit = seconds if limit is None else limit
-        self._begun = monotonic()
-        self.due = self._begun + seconds
+        self.due = monotonic() + seconds
+        self._cpu_time = ThreadCpuTime()
         self._lock = Lock()
         self._instead: Callable[[], Response] | None = None  # while there is work that can be given up
-
-    def by_the_clock(self) -> None:
-        """What is done by threads of this process takes no longer than ``limit``."""
-        self.due = min(self.due, self._begun + self.limit)
 
     @property
     def is_over(self) -> bool:
         """Whether the time is over."""
-        return monotonic() >= self.due
+        return self._left() <= 0
+
+    def _left(self) -> float:
+        """Seconds in which the time is not over."""
+        return min(self.due - monotonic(), self.limit - self._cpu_time.seconds())
 
     def watched(self, work: Callable[[], T], late: Callable[[], T], instead: Callable[[], Response]) -> T:
         """What ``work`` gives, or ``late`` when it looks at the clock itself and raises TimeoutError.
@@ -83,9 +86,10 @@ class Deadline:
 
         ``submit``: gives the work to a thread.
         """
-        future = submit(partial(copy_context().run, endpoint))
+        future = submit(partial(copy_context().run, self._timed, endpoint))
         answer = asyncio.wrap_future(future)
-        await asyncio.wait({answer}, timeout=max(0, self.due - monotonic()))
+        while not answer.done() and (left := self._left()) > 0:
+            await asyncio.wait({answer}, timeout=max(LOOK, left))
         if answer.done():
             return answer.result()
         if future.cancel():  # all threads have other work: too late for this one
@@ -95,6 +99,10 @@ class Deadline:
             return await answer
         answer.add_done_callback(_tell)
         return await run_in_threadpool(instead)
+
+    def _timed(self, endpoint: Callable[[], Response]) -> Response:
+        self._cpu_time.begin()
+        return endpoint()
 
 
 def _tell(abandoned: asyncio.Future[Response]) -> None:

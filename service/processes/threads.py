@@ -1,14 +1,32 @@
-"""Threads that share their time fairly among those who ask."""
+"""Threads that share their time fairly among those who ask, and the CPU time of one."""
 
 from __future__ import annotations
 
+import time
 from collections import OrderedDict, deque
 from collections.abc import Callable
 from concurrent.futures import Future, ThreadPoolExecutor
-from threading import Lock
+from threading import Lock, get_ident
 from typing import Any
 
 Waiting = tuple[Future[Any], Callable[[], Any]]
+
+
+class ThreadCpuTime:
+    """The CPU time of a thread since it began, for others to look at; 0 where the system does not tell."""
+
+    def __init__(self) -> None:
+        self._clock: int | None = None
+        self._begun = 0.0
+
+    def begin(self) -> None:
+        """In the thread."""
+        if hasattr(time, "pthread_getcpuclockid"):
+            self._begun, self._clock = time.thread_time(), time.pthread_getcpuclockid(get_ident())
+
+    def seconds(self) -> float:
+        """So much until now."""
+        return 0.0 if self._clock is None else time.clock_gettime(self._clock) - self._begun
 
 
 class SharedThreads:

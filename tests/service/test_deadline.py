@@ -7,6 +7,7 @@ import logging
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from threading import Event
+from time import thread_time
 
 import pytest
 from fastapi import Response
@@ -16,9 +17,11 @@ from service.http.deadline import Deadline
 LATE = Response(status_code=202)
 
 
-def answered(seconds: float, work: Callable[[], int], late: Callable[[], int] = lambda: 503) -> Response:
+def answered(
+    seconds: float, work: Callable[[], int], late: Callable[[], int] = lambda: 503, limit: float | None = None
+) -> Response:
     """The answer of an endpoint that does ``work`` under a deadline; its status is what the work gives."""
-    deadline = Deadline(seconds)
+    deadline = Deadline(seconds, limit)
 
     def endpoint() -> Response:
         return Response(status_code=deadline.watched(work, late, lambda: LATE))
@@ -52,6 +55,23 @@ def test_work_in_time_answers() -> None:
 
 def test_another_thread_answers_for_work_that_takes_too_long() -> None:
     assert answered(0.05, slow()) is LATE
+
+
+def test_the_limit_is_of_cpu_time() -> None:
+    """What waits, for a busy machine or for others, is not late; what computes for longer is."""
+
+    def waits() -> int:
+        Event().wait(0.1)
+        return 200
+
+    def computes() -> int:
+        begun = thread_time()
+        while thread_time() < begun + 0.1:
+            pass
+        return 200
+
+    assert answered(60, waits, limit=0.05).status_code == 200
+    assert answered(60, computes, limit=0.05) is LATE
 
 
 def test_work_that_looks_at_the_clock_is_late_by_itself() -> None:

@@ -59,7 +59,7 @@ def busy(store: Store, gate: Event, count: int = THREADS) -> list[Future[bool]]:
     """So many works of another one, which end when the gate is open."""
     assert isinstance(store.workers, InProcess)
     begun = [Event() for _ in range(count)]
-    works = [store.workers.threads.submit("other", lambda one=one: one.set() or gate.wait(10)) for one in begun]
+    works = [store.workers.threads.submit("other", lambda one=one: one.set() or gate.wait(60)) for one in begun]
     assert all(one.wait(10) for one in begun)
     return works
 
@@ -67,9 +67,9 @@ def busy(store: Store, gate: Event, count: int = THREADS) -> list[Future[bool]]:
 def test_evaluations_do_not_wait_for_derivations(filled: TestClient, store: Store) -> None:
     gate = Event()
     waiting = busy(store, gate)
-    store.settings = store.settings.model_copy(update={"limits": Limits(sync_seconds=0.5)})
-    assert filled.post("/v1/substructures", json=chain(2)).status_code == 202
+    assert filled.post("/v1/substructures", json=chain(2), headers={"Prefer": "wait=1"}).status_code == 202
     assert filled.post("/v1/trees/cell/evaluations", json={"quantities": ["metric"], "q": [0.1]}).status_code == 200
+    assert not any(each.done() for each in waiting)
     gate.set()
     assert all(each.result(10) for each in waiting)
 

@@ -11,13 +11,12 @@ runner at first; more are started when they are needed.
 from __future__ import annotations
 
 import logging
-import time
 from collections import Counter, OrderedDict, deque
 from collections.abc import Callable
 from concurrent.futures import Future, wait
 from dataclasses import dataclass, field
 from functools import partial
-from threading import Event, Lock, Thread, get_ident
+from threading import Event, Lock, Thread
 from time import monotonic
 
 from service.jobs.engines.engine import AttemptReport, Work
@@ -25,7 +24,7 @@ from service.jobs.engines.local import LocalEngine
 from service.jobs.engines.wire import read_report, read_work, report_frame, work_frame
 from service.jobs.kinds import run
 from service.jobs.worker import CLOSED
-from service.processes.threads import SharedThreads
+from service.processes.threads import SharedThreads, ThreadCpuTime
 
 NICE = 5  # those that answer go first, jobs last
 THREADS, LOOK = 4, 0.05  # of a process without runners; seconds between looks at the time that one has taken
@@ -48,7 +47,7 @@ class InProcess:
         future: Future[AttemptReport] = self.threads.submit(share, partial(_computed, work, took))
         while not future.done():
             left = min(LOOK, end - monotonic())
-            if left <= 0 or took.cpu_seconds() > work.budget.cpu_seconds:
+            if left <= 0 or took.seconds() > work.budget.cpu_seconds:
                 future.cancel()
                 took.is_given_up = True
                 raise TimeoutError
@@ -60,30 +59,17 @@ class InProcess:
         self.threads.close()
 
 
-class Took:
-    """The CPU time of a thread since it began, for others to look at; 0 where the system does not tell.
-
-    ``is_given_up``: nobody waits for it any more.
-    """
+class Took(ThreadCpuTime):
+    """What a work has taken; ``is_given_up``: nobody waits for it any more."""
 
     def __init__(self) -> None:
+        super().__init__()
         self.is_given_up = False
-        self._clock: int | None = None
-        self._begun = 0.0
-
-    def begin(self) -> None:
-        """In the thread."""
-        if hasattr(time, "pthread_getcpuclockid"):
-            self._begun, self._clock = time.thread_time(), time.pthread_getcpuclockid(get_ident())
 
     def go_on(self, _share: float) -> None:
         """A listener of progress. Raises TimeoutError when nobody waits."""
         if self.is_given_up:
             raise TimeoutError("nobody waits for this any more")
-
-    def cpu_seconds(self) -> float:
-        """So much until now."""
-        return 0.0 if self._clock is None else time.clock_gettime(self._clock) - self._begun
 
 
 def _computed(work: Work, took: Took) -> AttemptReport:
@@ -91,7 +77,7 @@ def _computed(work: Work, took: Took) -> AttemptReport:
     took.begin()
     given = read_work(work_frame(work), {})
     outcome = run(given.kind, dict(given.item), given.blobs, took.go_on)
-    return read_report(report_frame(AttemptReport(work.id, 1.0, outcome, cpu_seconds=took.cpu_seconds())))
+    return read_report(report_frame(AttemptReport(work.id, 1.0, outcome, cpu_seconds=took.seconds())))
 
 
 @dataclass(eq=False)
