@@ -14,7 +14,18 @@ from scipy.spatial.transform import Rotation
 
 from service.models.formulas import QUANTITIES
 from service.models.numbers import ANALYSES
-from substructures import Contact, InvalidInput, Model, Outputs, TreeMotion, couple, derive, evaluate, simulate
+from substructures import (
+    Contact,
+    Integrator,
+    InvalidInput,
+    Model,
+    Outputs,
+    TreeMotion,
+    couple,
+    derive,
+    evaluate,
+    simulate,
+)
 from substructures.analysis.motion.conditions import read_conditions
 from substructures.analysis.motion.contacts.contact_motion import OPEN, SLIP, STICK, ContactMotion
 from substructures.analysis.motion.contacts.deciding import DecidedContacts
@@ -279,6 +290,32 @@ def test_a_floating_base_lands_on_its_foot() -> None:
     assert np.abs(ours.qd[-1]).max() < 1e-4
     assert ours.q[-1, -1] == pytest.approx(4 * G / 400, abs=1e-5)
     assert ours.series["contact_forces"][-1, :, 0].sum() == pytest.approx(5 * G, rel=1e-4)
+
+
+@pytest.mark.parametrize(("seed", "end"), [(5, 1.2), (12, 1.1)])
+def test_a_hull_on_two_legs_rocks_on_its_feet(seed: int, end: float) -> None:
+    """Two feet on each leg, whose velocities across it are one; slips that hardly begin are stiff."""
+    legs = [
+        {"name": name, "parent": "hull", "mass": 0.5, "com": [0, 0, -0.2],
+         "inertia": {"xx": 0.01, "yy": 0.01, "zz": 0.002},
+         "joint": {"type": "revolute", "axis": [0, 1, 0], "coordinate": f"q{name}", "damping": 0.5 * (seed % 2),
+                   "placement": {"position": [0, side, 0]}}}
+        for name, side in (("l", 0.15), ("r", -0.15))
+    ]  # fmt: skip
+    hull = {"name": "hull", "parent": "base", "mass": 4, "inertia": {"xx": 0.1, "yy": 0.08, "zz": 0.12},
+            "joint": joint_of("floating")}  # fmt: skip
+    feet = {f"{leg}{end}": (leg, x) for leg in "lr" for end, x in (("f", 0.05), ("b", -0.05))}
+    ports = [{"name": name, "body": leg, "position": [x, 0, -0.4]} for name, (leg, x) in feet.items()]
+    model, rng = (
+        of("b", {"name": "hull", "bodies": [hull, *legs], "ports": ports}, [0, 0, -G]),
+        np.random.default_rng(seed),
+    )
+    turn = Rotation.from_rotvec(rng.normal(size=3) * 0.2).as_quat(scalar_first=True)
+    q, qd = [0, 0, 0.55, *turn, *rng.normal(size=2) * 0.2], rng.normal(size=8) * 0.3
+    floor = [Contact(name, f"b.{name}", restitution=float(rng.choice([0, 0.3])), friction=0.3) for name in feet]
+    motion = simulate(model, q, (0, end), qd=qd, kind=TreeMotion(contacts=floor), integrator=Integrator(method="Radau"))
+    assert (motion.status, motion.is_right) == ("finished", True)
+    assert {event.kind for event in motion.events} == {"impact", "lift_off", "stick", "slip"}
 
 
 #: legs of a quadruped: port of the trunk, side, front

@@ -11,6 +11,8 @@ from substructures.analysis.motion.problems.problem import MotionProblem
 from substructures.analysis.motion.resets import acting
 from substructures.errors import InvalidArgument
 
+#: that begin anew, and come back to closed contacts, after any step
+OF_CONTACTS = (*EXPLICIT, "Radau")
 #: laws of friction that steps of a fixed size do not take
 WHY_NOT = {
     "exact": "joints that stick exactly need steps of any size",
@@ -31,9 +33,9 @@ class TreeProblem(MotionProblem):
         if self.kind.friction in WHY_NOT and self.integrator.fixed_step:
             message = f"{WHY_NOT[self.kind.friction]}: leave 'fixed_step' out"
             raise InvalidArgument.at("/friction", "not-supported", message)
-        if self.kind.contacts and self.integrator.method not in EXPLICIT:
-            words = ", ".join(f"'{method}'" for method in EXPLICIT)
-            message = f"contacts are followed by explicit steps of any size: take one of {words}"
+        if self.kind.contacts and self.integrator.method not in OF_CONTACTS:
+            words = ", ".join(f"'{method}'" for method in OF_CONTACTS)
+            message = f"contacts are followed by single steps of any size: take one of {words}"
             place = "/method" if self.integrator.fixed_step is None else "/fixed_step"
             raise InvalidArgument.at(place, "not-supported", message)
         if self.kind.contacts and acting(self.events):

@@ -21,26 +21,23 @@ import numpy as np
 import scipy
 from numpy.typing import NDArray
 
+from substructures.analysis.motion.contacts.pivoting import JAMMED, ZERO, lemke
 from substructures.array import Array
 
-#: of the largest number: what is zero in a pivot
-ZERO = 1e-12
 #: of the largest force and the largest velocity (acceleration): by how much conditions may fail
 MET = 1e-9
 #: facets of a cone, and how often they are turned where Newton's method leads nowhere from there
 FACETS, TURNS = 8, 8
+#: over contacts, from one start to the next
+SWEEPS = 10, 20, 70, 200
 #: so much a contact yields, beside A_NN, and how often what that leaves is taken away
 SOFT, ROUNDS = 1e-8, 30
 #: and how much more on the way there from contacts that hardly know of each other
 YIELDING = 10.0 ** np.arange(1, -8, -1)
-#: most steps of that, and of the largest of b when it has arrived
-NEWTON, EXACT = 100, 1e-14
+#: most steps of that, parts of one that are tried, most that lead away, and of the largest of b when it has arrived
+NEWTON, SHARES, STRAYS, EXACT = 100, (1.0, 0.5, 0.25, 0.1, 0.03, 0.01), 10, 1e-14
 #: of the largest: what is nothing but rounding; an inverse mass above zero
 ROUNDING, LEAST = 4e-16, 1e-300
-JAMMED = (
-    "no contact forces were found that agree with Coulomb's law (Painleve's paradox: the contact jams): take less "
-    "friction, or end the span before it"
-)
 
 
 @dataclass(frozen=True)
@@ -131,7 +128,8 @@ def _found(cones: Cones, near: Array) -> Array:
 
 def _starts(cones: Cones, near: Array) -> Iterator[Array]:
     """Forces (k, 3) from which Newton's method may lead on: those that are near; of facets; of contacts that yield less
-    and less, from where they hardly know of each other, as redundant ones that are alike need; of other facets.
+    and less, from where they hardly know of each other, as redundant ones that are alike need; of sweeps over contacts
+    one after the other; of other facets.
     """
     if near.any():
         yield near
@@ -141,8 +139,25 @@ def _starts(cones: Cones, near: Array) -> Iterator[Array]:
     for more in YIELDING:
         p = _on_cones(_softer(cones, more), p)
     yield p
+    p = np.zeros(near.shape)
+    for count in SWEEPS:
+        p = _swept(cones, p, count)
+        yield p
     for turn in others:
         yield _pressed(cones, turn)
+
+
+def _swept(cones: Cones, p: Array, count: int) -> Array:
+    """p after so many sweeps over contacts, each of which gets the forces that its own velocities ask for (projected
+    Gauss-Seidel: M. Jean, Comput. Methods Appl. Mech. Engrg. 177, 1999)."""
+    p, yields = p.copy(), [max(np.linalg.norm(cones.A[i, :, i], 2), LEAST) for i in range(len(p))]
+    for _ in range(count):
+        for i, most in enumerate(cones.friction.tolist()):
+            y = p[i] - (np.einsum("ajb,jb->a", cones.A[i], p) + cones.b[i]) / yields[i]
+            y_T = np.where(cones.tangents[i], y[1:], 0.0)
+            p[i, 0] = max(0.0, y[0])
+            p[i, 1:] = y_T * min(1.0, most * p[i, 0] / max(float(np.linalg.norm(y_T)), LEAST))
+    return p
 
 
 def _on_cones(cones: Cones, p: Array) -> Array:
@@ -152,21 +167,30 @@ def _on_cones(cones: Cones, p: Array) -> Array:
 
     (P. Alart and A. Curnier, Comput. Methods Appl. Mech. Engrg. 92, 1991).
     """
-    k = len(p)
+    k, strays = len(p), 0
     A = cones.A.reshape(3 * k, 3 * k)
-    left, size = _missing(cones, p), np.inf
+    left, slopes = _missing(cones, p)
+    size = least_left = float(np.abs(left).max(initial=0))
+    nearest = p
     for _ in range(NEWTON):
-        before, size = size, float(np.abs(left[0]).max(initial=0))
-        if size <= EXACT or size >= before:
+        if size <= EXACT:
             break
-        step = np.linalg.lstsq(np.eye(3 * k) - left[1] @ (np.eye(3 * k) - A), left[0].ravel(), rcond=ZERO)[0]
-        for share in (1.0, 0.5, 0.25, 0.1, 0.03, 0.01):
+        step = np.linalg.lstsq(np.eye(3 * k) - slopes @ (np.eye(3 * k) - A), left.ravel(), rcond=ZERO)[0]
+        for share in SHARES:
             trial = p - share * step.reshape(k, 3)
-            found = _missing(cones, trial)
-            if np.abs(found[0]).max() < size:
-                p, left = trial, found
+            left, slopes = _missing(cones, trial)
+            if np.abs(left).max() < size:
                 break
-    return p
+        else:  # it may come back from a corner of the law
+            strays += 1
+            if strays > STRAYS:
+                break
+            trial = p - step.reshape(k, 3)
+            left, slopes = _missing(cones, trial)
+        p, size = trial, float(np.abs(left).max())
+        if size < least_left:
+            least_left, nearest = size, p
+    return nearest
 
 
 def _missing(cones: Cones, p: Array) -> tuple[Array, Array]:
@@ -228,52 +252,6 @@ def _facets(tangents: NDArray[np.bool_], turn: float) -> tuple[Array, NDArray[np
         columns.append(some)
         of += [i] * len(some)
     return np.concatenate([np.zeros((0, 2)), *columns]), np.array(of, dtype=np.int64)
-
-
-def lemke(M: Array, q: Array) -> Array:
-    """z >= 0 with M z + q >= 0 and z . (M z + q) = 0 by C. E. Lemke's pivoting (R. W. Cottle, J.-S. Pang, R. E. Stone,
-    The Linear Complementarity Problem, 1992, section 4.4), ties by the lexicographic rule. Raises ArithmeticError where
-    it ends on a ray.
-    """
-    n = len(q)
-    if not n or q.min() >= 0:
-        return np.zeros(n)
-    # w - M z - z_0 = q: columns w, z, z_0, and q
-    T = np.hstack([np.eye(n), -M, -np.ones((n, 1)), q[:, None]])
-    basis = np.arange(n)
-    row, entering = int(q.argmin()), 2 * n
-    for _ in range(50 * (n + 1)):
-        leaving = int(basis[row])
-        basis[row] = entering
-        T[row] /= T[row, entering]
-        others = np.arange(n) != row
-        T[others] -= np.outer(T[others, entering], T[row])
-        if leaving == 2 * n:
-            z = np.zeros(2 * n + 1)
-            z[basis] = T[:, -1]
-            return np.maximum(z[n : 2 * n], 0.0)
-        # the complement of what has left
-        entering = leaving + n if leaving < n else leaving - n
-        row = _leaving(T, basis, entering)
-    raise ArithmeticError(JAMMED)
-
-
-def _leaving(T: Array, basis: NDArray[np.int64], entering: int) -> int:
-    """The row that bounds the entering variable, z_0 first among equals. Raises ArithmeticError where none does."""
-    n, column = len(T), T[:, entering]
-    rows = np.flatnonzero(column > ZERO * np.abs(T[:, : 2 * n]).max(initial=1))
-    if not len(rows):
-        raise ArithmeticError(JAMMED)
-    ratios = T[rows, -1] / column[rows]
-    rows = rows[ratios <= ratios.min() + ZERO]
-    if (basis[rows] == 2 * n).any():
-        return int(rows[basis[rows] == 2 * n][0])
-    for j in range(n):
-        if len(rows) == 1:
-            break
-        ratios = T[rows, j] / column[rows]
-        rows = rows[ratios <= ratios.min() + ZERO]
-    return int(rows[0])
 
 
 def least(A: Array, b: Array, yields: Array) -> Array:

@@ -19,7 +19,7 @@ import numpy as np
 import scipy
 from numpy.typing import NDArray
 
-from substructures.analysis.motion.contacts.complementarity import JAMMED
+from substructures.analysis.motion.contacts.pivoting import JAMMED
 from substructures.array import Array
 from substructures.compile.motion import Pressing
 
