@@ -64,6 +64,12 @@ def test_a_server_starts_without_what_few_requests_need() -> None:
     assert not late & set(done.stdout.split())
 
 
+def test_the_parent_of_a_server_imports_nothing_heavy() -> None:
+    program = "import sys, service.cli.main, service.processes.parent; print(*sys.modules)"
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
+    assert not HEAVY & set(done.stdout.split())
+
+
 TREE = {"name": "t", "instances": [{"name": "a", "substructure": "simple-pendulum"}]}
 
 
