@@ -9,6 +9,8 @@ from typing import Any
 from fastapi import routing
 from pydantic import BaseModel
 
+from service.http.routing import router_of
+
 
 def reference(schema: str) -> dict[str, str]:
     """A reference to a schema of the document."""
@@ -67,4 +69,4 @@ class DescribedRoute(routing.APIRoute):
 
 
 #: a router of such routes
-APIRouter = partial(routing.APIRouter, route_class=DescribedRoute)
+APIRouter = partial(router_of, DescribedRoute)
