@@ -58,7 +58,7 @@ def test_a_server_starts_without_what_few_requests_need() -> None:
     late |= {"substructures.analysis.closed", "substructures.ensembles.ensemble", "service.models.numbers.analysis"}
     late |= {f"service.jobs.kinds.{kind}" for kind in ("analyse", "evaluate", "export", "verify")}
     late |= {"substructures.interchange.importing", "substructures.interchange.kinds"}
-    late |= {"httpx2", "llvmlite", "markdown_it"}
+    late |= {"httpx2", "llvmlite", "markdown_it", "sqlalchemy.dialects.postgresql"}
     program = (
         "import sys, service.cli.commands.server, service.app\nprint(*sys.modules)\n"
         "print(*(each.path for each in service.app.bare_app().described if 'read' in vars(each)), file=sys.stderr)"
