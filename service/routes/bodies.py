@@ -46,7 +46,7 @@ class DescribedRoute(routing.APIRoute):
     """A route whose answers are described by ``models``: its ``response_model``, and ``model`` of its ``responses``.
 
     They are words about what is written here, and named to FastAPI, which would build a validator of each for each
-    route: a good part of the time in which a server starts.
+    route.
     """
 
     def __init__(self, *given: Any, response_model: Any = None, **more: Any) -> None:
