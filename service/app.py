@@ -7,7 +7,6 @@ from contextlib import contextmanager
 from datetime import timedelta
 
 from fastapi import FastAPI
-from fastapi.routing import APIRoute
 from sqlalchemy.exc import DBAPIError
 
 from service import __version__
@@ -16,6 +15,7 @@ from service.http import openapi, problems
 from service.http.compression import Compression
 from service.http.middleware import Conventions
 from service.http.not_derived import DerivesFirst
+from service.http.routing import Operation
 from service.jobs.engines.pool import InProcess
 from service.metrics import Metrics
 from service.operations.seed import Told, import_catalogue
@@ -140,18 +140,12 @@ def bare_app(allowed_hosts: tuple[str, ...] = (), metrics: Metrics | None = None
         redoc_url=None,
         redirect_slashes=False,
         telemetry={"tracing": False, "metrics": False, "logs": False},  # /metrics and the log are our own
-        responses=openapi.PROBLEM,
-        generate_unique_id_function=openapi.operation_id,
     )
-    app.router.routes += models.evaluations.routes  # what is asked for most is looked for first, and without a router
-    routers = [module.router for module in ROUTES]
-    for router in routers:
-        app.include_router(router)
-    known = [
-        route for router in [models.evaluations, *routers] for route in router.routes if isinstance(route, APIRoute)
-    ]
-    app.described = known
-    problems.install(app, known, error_page)
+    routers = [models.evaluations, *(module.router for module in ROUTES)]  # what is asked for most is looked for first
+    operations = [route for router in routers for route in router.routes if isinstance(route, Operation)]
+    app.router.routes += operations
+    app.described = operations
+    problems.install(app, operations, error_page)
     app.add_middleware(Compression)
     app.add_middleware(DerivesFirst)
     app.add_middleware(Conventions, allowed_hosts=allowed_hosts, metrics=metrics or Metrics())

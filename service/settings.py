@@ -8,6 +8,7 @@ from typing import Annotated, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator
 
+from service.processes.accepting import PROCESSES
 from service.sources import read_source
 from substructures.compile.setting import VARIABLES, Setting
 from substructures.documents import message_of
@@ -21,7 +22,6 @@ COMPILER = tuple(name[len(PREFIX) :].lower() for name in VARIABLES)
 #: limits that several processes share out
 SHARED = ("connections", "connections_per_address", "event_streams", "event_streams_per_key")
 LISTS = ("allowed_hosts", "mirror_sources")  # separated by commas
-PROCESSES = 256  # that share the numbers of their connections
 LOOPBACK = ("localhost", "127.0.0.1", "::1")
 
 # Bounds of limits are what a database, a kernel and a clock can still be told: 2^62, a year, a century.

@@ -11,10 +11,10 @@ from fastapi import FastAPI, Request, Response
 from fastapi.encoders import jsonable_encoder
 from fastapi.openapi.models import Components
 from fastapi.openapi.utils import get_openapi
-from fastapi.routing import APIRoute
 from pydantic import BaseModel
 from pydantic.json_schema import models_json_schema
 
+from service.http.routing import TEMPLATE, Operation
 from service.models.numbers import ANALYSES
 from service.schemas.analyses.velocity_constraints import VelocityConstraints
 from service.schemas.entries import ChangedInstance, ChangedTree, SubmittedDefinition, SubmittedTree, VisibilityRequest
@@ -28,19 +28,6 @@ from substructures.loads.kinds import AnyTreeLoad
 from substructures.part.definition import Definition
 from substructures.tree.document import Instance
 
-TEMPLATE = "#/components/schemas/{model}"
-PROBLEM: dict[int | str, dict[str, Any]] = {
-    "default": {
-        "description": "Problem document",
-        "headers": {
-            "Retry-After": {
-                "description": "seconds, where the same request can succeed later (some of 409 and 503)",
-                "schema": {"type": "integer"},
-            }
-        },
-        "content": {"application/problem+json": {"schema": {"$ref": TEMPLATE.format(model="Problem")}}},
-    }
-}
 JOB_ADDRESS = {"description": "the job", "schema": {"type": "string", "format": "uri-reference"}}
 PREFER = {
     "name": "Prefer",
@@ -69,15 +56,11 @@ _READ_BY_US: tuple[type[BaseModel], ...] = (
 )
 
 
-def operation_id(route: APIRoute) -> str:
-    """The name of an operation, and of a method of a generated client: that of the function that answers."""
-    return route.name
-
-
 def document(app: DocumentedApp) -> dict[str, Any]:
     """The document of an app."""
-    result = get_openapi(title=app.title, version=app.version, description=app.description, routes=app.routes)
-    written = dict.fromkeys(model for route in app.described for model in getattr(route, "models", ()))
+    routes = [operation.read for operation in app.described]
+    result = get_openapi(title=app.title, version=app.version, description=app.description, routes=routes)
+    written = dict.fromkeys(model for route in routes for model in getattr(route, "models", ()))
     _, answers = models_json_schema([(model, "serialization") for model in written], ref_template=TEMPLATE)
     read_by_us = (*_READ_BY_US, *dict.fromkeys(analysis.schema for analysis in ANALYSES.values()))
     _, extra = models_json_schema([(model, "validation") for model in read_by_us], ref_template=TEMPLATE)
@@ -130,5 +113,5 @@ class DocumentedApp(FastAPI):
         return self.openapi_schema
 
     _bytes: bytes | None = None
-    #: the routes whose answers are described by models of their own
-    described: Sequence[APIRoute] = ()
+    #: what the document describes
+    described: Sequence[Operation] = ()

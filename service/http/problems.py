@@ -17,10 +17,10 @@ from typing import Any
 import orjson
 from fastapi import FastAPI, Request, Response
 from fastapi.exceptions import RequestValidationError
-from fastapi.routing import APIRoute
 from sqlalchemy.exc import DataError, DBAPIError
 from sqlalchemy.exc import TimeoutError as PoolTimeout
 from starlette.exceptions import HTTPException
+from starlette.routing import Route
 
 from service.http.request_id import current_request_id
 from service.messages.refusals import Refused, known_refusal, not_found, problem, unprocessable
@@ -107,7 +107,7 @@ def response(error: Exception, instance: str, page: Page | None = None) -> Respo
     return Response(body, refused.status, headers, MEDIA_TYPE)
 
 
-def _unknown(request: Request, found: Sequence[APIRoute], routes: Sequence[APIRoute]) -> Refused | None:
+def _unknown(request: Request, found: Sequence[Route], routes: Sequence[Route]) -> Refused | None:
     """404 where a word that is free for one method is one of a list for another, as POST .../linearisations."""
     parents = {route.path.rpartition("/")[0] for route in found if route.path.endswith("}")}
     ends = [route.path.rpartition("/") for route in routes if request.method in (route.methods or ())]
@@ -121,7 +121,7 @@ def _unknown(request: Request, found: Sequence[APIRoute], routes: Sequence[APIRo
     return not_found(detail, "unknown-analysis")
 
 
-def _other_method(request: Request, found: Sequence[APIRoute]) -> Refused:
+def _other_method(request: Request, found: Sequence[Route]) -> Refused:
     possible = {method for route in found for method in route.methods or ()}
     methods = ", ".join(sorted(possible | ({"HEAD"} if "GET" in possible else set())))
     detail = f"{request.method[:40]} is not possible at this path, but {methods}"
@@ -134,7 +134,7 @@ def _is_browser(request: Request) -> bool:
     return request.method in ("GET", "HEAD") and not request.url.path.startswith("/v1/") and "text/html" in accepted
 
 
-def install(app: FastAPI, routes: Sequence[APIRoute], page: Page) -> None:
+def install(app: FastAPI, routes: Sequence[Route], page: Page) -> None:
     """Let the app answer with problem documents, and browsers with pages; ``service.http.middleware`` catches what no
     handler is for.
     """

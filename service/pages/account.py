@@ -10,13 +10,14 @@ from pathlib import Path
 from typing import Any
 from urllib.parse import parse_qs, urlsplit
 
-from fastapi import APIRouter, Request, Response
+from fastapi import Request, Response
 from fastapi.concurrency import run_in_threadpool
 from fastapi.routing import APIRoute
 from starlette.requests import cookie_parser
 
 from service.http.authority import network_of
 from service.http.requests import SESSION, RawBody, StoreOf, authenticated, credentials
+from service.http.routing import router_of
 from service.messages.refusals import Refused
 from service.messages.viewer import ANYBODY, Viewer
 from service.pages.html import Html, facts, tag
@@ -52,7 +53,7 @@ class PageRoute(APIRoute):
         return shown
 
 
-router = APIRouter(include_in_schema=False, route_class=PageRoute)
+router = router_of(PageRoute, include_in_schema=False)
 
 
 @router.get("/favicon.ico")

@@ -9,9 +9,10 @@ from importlib import import_module
 from pathlib import PurePosixPath
 from typing import TYPE_CHECKING, Annotated
 
-from fastapi import APIRouter, Query, Request, Response
+from fastapi import Query, Request, Response
 from starlette.responses import FileResponse
 
+from service.http.routing import router_of
 from service.messages.refusals import not_found
 from service.pages.documents_folder import FOLDER
 from service.pages.html import Html, html, link, tag
@@ -31,7 +32,7 @@ DRAWN = {
     "X-Content-Type-Options": "nosniff",
     "Content-Security-Policy": "default-src 'none'; style-src 'unsafe-inline'",
 }
-router = APIRouter(include_in_schema=False)
+router = router_of(include_in_schema=False)
 #: around what may be wider than the screen
 SCROLLS = '<div class="scroll text" tabindex="0" role="group" aria-label="Table">'
 

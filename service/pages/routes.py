@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from typing import Annotated, Any
 
-from fastapi import APIRouter, Query, Request, Response
+from fastapi import Query, Request, Response
 
 from service.http.acting import in_time
 from service.http.requests import StoreOf, ViewerOf, needs
+from service.http.routing import router_of
 from service.jobs.worker import Worker
 from service.messages.answers import Answer
 from service.messages.refusals import Refused
@@ -49,7 +50,7 @@ ADVICE = "compare smaller ones"
 CARDS, TREES, JOBS, BAD = 60, 100, 100, 50
 NONE: searches.Page[Tree] = searches.Page([], None)
 
-router = APIRouter(include_in_schema=False, dependencies=[needs("read")], route_class=PageRoute)
+router = router_of(PageRoute, include_in_schema=False, dependencies=[needs("read")])
 
 
 @router.get("/")

@@ -13,8 +13,7 @@ from mmap import mmap
 from time import monotonic
 from typing import Any
 
-from service.settings import PROCESSES
-
+PROCESSES = 256  # that share the numbers of their connections
 ABSENT = 2**32 - 1
 PATIENCE = 0.005  # seconds for which a connection is left to others
 LATER = 0.02  # seconds after which it must be another one that waits

@@ -5,16 +5,15 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from datetime import timedelta
 from functools import cache
+from importlib import import_module
 from typing import Any
 
 from sqlalchemy import Connection, Table
-from sqlalchemy.dialects import postgresql, sqlite
 from sqlalchemy.exc import DBAPIError, OperationalError
 
 from service.database.clock import time_now
 
 _READ_ONLY = ("25006", "0A000")  # of PostgreSQL
-_INSERT: dict[str, Any] = {"sqlite": sqlite.insert, "postgresql": postgresql.insert}
 
 
 def now(shift: timedelta = timedelta()) -> str:
@@ -39,8 +38,8 @@ def put_all(connection: Connection, table: Table, rows: Sequence[Mapping[str, An
 
 @cache
 def _insert(dialect: str, table: Table) -> Any:
-    """Built once: to build a statement takes longer than to execute it."""
-    return _INSERT[dialect](table).on_conflict_do_nothing()
+    """Built once: to build a statement takes longer than to execute it. Of two dialects one is never imported."""
+    return import_module(f"sqlalchemy.dialects.{dialect}").insert(table).on_conflict_do_nothing()
 
 
 def is_outage(error: Exception) -> bool:

@@ -9,6 +9,8 @@ from typing import Any
 from fastapi import routing
 from pydantic import BaseModel
 
+from service.http.routing import router_of
+
 
 def reference(schema: str) -> dict[str, str]:
     """A reference to a schema of the document."""
@@ -44,7 +46,7 @@ class DescribedRoute(routing.APIRoute):
     """A route whose answers are described by ``models``: its ``response_model``, and ``model`` of its ``responses``.
 
     They are words about what is written here, and named to FastAPI, which would build a validator of each for each
-    route: a good part of the time in which a server starts.
+    route.
     """
 
     def __init__(self, *given: Any, response_model: Any = None, **more: Any) -> None:
@@ -67,4 +69,4 @@ class DescribedRoute(routing.APIRoute):
 
 
 #: a router of such routes
-APIRouter = partial(routing.APIRouter, route_class=DescribedRoute)
+APIRouter = partial(router_of, DescribedRoute)

@@ -9,9 +9,9 @@ from fastapi import Query, Request, Response
 
 from service.http.acting import Act, Commit, SpooledAct, SpooledActOf, in_time
 from service.http.one_state import OneStateRoute
-from service.http.openapi import PROBLEM, operation_id
 from service.http.requests import StoreOf, ViewerOf, media_type, needs
 from service.http.responses import remembered
+from service.http.routing import router_of
 from service.jobs.worker import Worker
 from service.messages.answers import JSON, Answer, Stream, etag
 from service.messages.negotiation import MEDIA_TYPES
@@ -38,13 +38,7 @@ from substructures.formats.arrays import MEDIA_TYPE as NPZ
 from substructures.formats.arrow import MEDIA_TYPE as ARROW
 
 router = APIRouter(prefix="/v1/trees/{ref}", tags=["models"])
-evaluations = APIRouter(
-    prefix="/v1/trees/{ref}",
-    tags=["models"],
-    route_class=OneStateRoute,
-    responses=PROBLEM,
-    generate_unique_id_function=operation_id,
-)
+evaluations = router_of(OneStateRoute, prefix="/v1/trees/{ref}", tags=["models"])
 GROUP = "in base parameters: symbols for what masses and lengths occur in together, with their definitions"
 Group = Annotated[bool, Query(description=GROUP)]
 READ = [needs("read")]

@@ -58,10 +58,20 @@ def test_a_server_starts_without_what_few_requests_need() -> None:
     late |= {"substructures.analysis.closed", "substructures.ensembles.ensemble", "service.models.numbers.analysis"}
     late |= {f"service.jobs.kinds.{kind}" for kind in ("analyse", "evaluate", "export", "verify")}
     late |= {"substructures.interchange.importing", "substructures.interchange.kinds"}
-    late |= {"httpx2", "llvmlite", "markdown_it"}
-    program = "import sys, service.cli.commands.server; print(*sys.modules)"
+    late |= {"httpx2", "llvmlite", "markdown_it", "sqlalchemy.dialects.postgresql"}
+    program = (
+        "import sys, service.cli.commands.server, service.app\nprint(*sys.modules)\n"
+        "print(*(each.path for each in service.app.bare_app().described if 'read' in vars(each)), file=sys.stderr)"
+    )
     done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
     assert not late & set(done.stdout.split())
+    assert not done.stderr.split()  # no parameters of an operation were read
+
+
+def test_the_parent_of_a_server_imports_nothing_heavy() -> None:
+    program = "import sys, service.cli.main, service.processes.parent; print(*sys.modules)"
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
+    assert not HEAVY & set(done.stdout.split())
 
 
 TREE = {"name": "t", "instances": [{"name": "a", "substructure": "simple-pendulum"}]}

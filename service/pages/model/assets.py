@@ -5,9 +5,10 @@ from __future__ import annotations
 import hashlib
 from pathlib import Path
 
-from fastapi import APIRouter, Response
+from fastapi import Response
 from starlette.responses import FileResponse
 
+from service.http.routing import router_of
 from service.messages.answers import FOR_EVER
 from service.messages.refusals import not_found
 from service.pages.html import Html, html, tag
@@ -23,7 +24,7 @@ FILES = {path.relative_to(FOLDER).as_posix(): path for path in sorted(FOLDER.rgl
 DIGEST = hashlib.sha256(b"".join(path.read_bytes() for path in FILES.values())).hexdigest()[:16]
 ROOT = f"/assets/{DIGEST}"
 
-router = APIRouter(include_in_schema=False)
+router = router_of(include_in_schema=False)
 
 
 @router.get("/assets/{digest}/{name:path}")

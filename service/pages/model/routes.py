@@ -6,10 +6,11 @@ from collections.abc import Callable
 from functools import partial
 from typing import Annotated
 
-from fastapi import APIRouter, Depends, Query, Request, Response
+from fastapi import Depends, Query, Request, Response
 
 from service.http.acting import in_time
 from service.http.requests import StoreOf, ViewerOf, needs
+from service.http.routing import router_of
 from service.jobs.worker import Worker
 from service.messages.refusals import not_found
 from service.messages.viewer import Viewer
@@ -67,7 +68,7 @@ Newest = Annotated[int, Query(alias="top", ge=0)]
 Name = Annotated[str, Query(max_length=200)]
 ADVICE = "take it as code instead"
 
-router = APIRouter(include_in_schema=False, dependencies=[needs("read")], route_class=PageRoute)
+router = router_of(PageRoute, include_in_schema=False, dependencies=[needs("read")])
 
 
 AskedOf = Annotated[Asked, Depends()]
