@@ -21,7 +21,7 @@ STATES = {"failed": "warn", "cancelled": "quiet", "queued": "quiet"}
 def jobs_page(jobs: Sequence[Job], progress: Sequence[Progress], more: bool, query: Mapping[str, str]) -> bytes:
     """The bytes of the list, the newest first; ``more``: there are others; ``query``: what it is narrowed to."""
     rows = [_row(job, each) for job, each in zip(jobs, progress, strict=True)]
-    columns = ("job", "kind", "state", "progress", "items", "created")
+    columns = ("job", "kind", "state")
     note = tag("p", "There are more: ", tag("code", "GET /v1/jobs"), ".", class_="quiet") if more else Html()
     none = "None of these." if any(query.values()) else "None yet."
     listed = table(columns, rows) if rows else tag("p", none, class_="quiet")
@@ -41,13 +41,13 @@ def _filter(query: Mapping[str, str]) -> Html:
 
 
 def _row(job: Job, progress: Progress) -> list[Content]:
+    """Three columns, which phones have room for."""
+    created = tag("div", f"{job.created[:10]} {job.created[11:19]}", class_="quiet small")
+    state = tag("span", job.state, class_=STATES.get(job.state))
     return [
-        link(tag("code", job.id[:16]), f"/jobs/{job.id}"),
+        [link(tag("code", job.id[:16]), f"/jobs/{job.id}"), created],
         f"{job.kind}: {job.label}" if job.label else job.kind,
-        _state(job),
-        _bar(progress, job),
-        _counted(job),
-        f"{job.created[:10]} {job.created[11:19]}",
+        [state, ", ", _counted(job), _bar(progress, job)],
     ]
 
 

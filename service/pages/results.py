@@ -26,11 +26,11 @@ def results_section(job: Job, items: Sequence[JobItem], files: Mapping[str, Sequ
         return []
     rows = [(view["position"], *_row(view, item)) for view, item in zip(shown, items, strict=False)]
     more = tag("p", "There are more: ", link("all", f"{job_path(job.id)}/items?state=succeeded"), ".", class_="quiet")
-    listed = table(("item", "became", "figures", "files"), rows)
+    listed = table(("item", "became", "files"), rows)
     return [tag("h2", "Results"), listed, more if len(items) > PREVIEWED else Html()]
 
 
-def _row(view: Mapping[str, Any], item: JobItem) -> tuple[Content, Content, Content]:
+def _row(view: Mapping[str, Any], item: JobItem) -> tuple[Content, Content]:
     told: Mapping[str, Any] = orjson.loads(item.summary or "{}")
     place = str(told.get("location", ""))
     page = next((place.replace(api, pages, 1) for api, pages in STORED.items() if place.startswith(api)), "")
@@ -39,7 +39,7 @@ def _row(view: Mapping[str, Any], item: JobItem) -> tuple[Content, Content, Cont
     kept = [(name, x) for name, x in said.items() if name not in SILENT]
     figures = joined([f"{name} {_short(x)}" for name, x in kept[:FIGURES]])
     links = [link(f"{each['name']} ({each['size']:,} bytes)", each["href"]) for each in view["files"]]
-    return became, figures, joined(links)
+    return [became, tag("div", figures)], joined(links)
 
 
 def _picture(view: Mapping[str, Any]) -> Html:

@@ -274,7 +274,7 @@ def test_what_is_not_known_is_refused() -> None:
         simulate(
             model, start, (0, 1), integrator=Integrator(FixedStep(0.01)), outputs=Outputs(events=[Event("e", "t")])
         )
-    with pytest.raises(InvalidInput, match="regularised"):
+    with pytest.raises(InvalidInput, match="no joint of the tree has"):
         simulate(model, start, (0, 1), kind=TreeMotion("exact"))
     with pytest.raises(InvalidDocument, match="'spherical' and 'free'"):
         simulate(model, start, (0, 1), kind=Geodesic())

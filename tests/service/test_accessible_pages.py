@@ -9,6 +9,7 @@ import pytest
 from fastapi.testclient import TestClient
 
 from .conftest import PENDULUM
+from .fake_engine import export, submitted
 from .one_store import filled, store
 from .test_model_pages import READY, Tab, address, browser, in_browser
 
@@ -60,6 +61,19 @@ def test_long_formulas_of_a_difference_are_broken(browser: Any, address: str, fi
     answer = filled.post("/v1/substructures", json={**PENDULUM, "name": "long", "bodies": [body]})
     assert answer.status_code == 201, answer.text
     Tab(browser, address, "/substructures/pendulum@1/difference?to=long", 390).close()
+
+
+@in_browser
+@pytest.mark.deep
+def test_phones_show_how_far_jobs_are(browser: Any, address: str, filled: TestClient) -> None:
+    submitted(filled, export("cell", "metric"))
+    tab = Tab(browser, address, "/jobs", 360)
+    bar = tab.page.locator(".share").first.bounding_box()
+    assert bar is not None
+    assert bar["width"] > 70
+    assert bar["x"] + bar["width"] <= 360
+    assert faults(tab) == []
+    tab.close()
 
 
 @in_browser

@@ -105,8 +105,25 @@ def test_it_moves(satellite: TestClient) -> None:
     for kind in ("text/csv", "image/svg+xml", "application/x-npz"):
         answer = satellite.post("/v1/trees/satellite/simulations", json=start, headers={"Accept": kind})
         assert answer.status_code == 200, (kind, answer.text[:300])
-    wrong = satellite.post("/v1/trees/satellite/simulations", json={**start, "friction": "exact"})
-    assert wrong.json()["errors"][0]["code"] == "not-supported", wrong.text
+
+
+def test_a_wheel_of_it_sticks(client: TestClient) -> None:
+    """Told with the hull's quaternion; without friction there is none to be exact."""
+    definition = TREE["instances"][0]["definition"]
+    hull, wheel = definition["bodies"]
+    rubbing = {**wheel["joint"], "friction": {"coulomb": "1/2", "velocity": "1/1000"}}
+    instance = {"name": "s", "definition": {**definition, "bodies": [hull, {**wheel, "joint": rubbing}]}}
+    for tree in (TREE, {**TREE, "name": "rubbing", "instances": [instance]}):
+        assert client.post("/v1/trees", json=tree).status_code == 201
+    start = {"q": [0, 0, 0, 1, 0, 0, 0, 0], "qd": [0] * 6 + [1], "span": [0, 1], "friction": "exact"}
+    motion = client.post("/v1/trees/rubbing/simulations", json=start).json()
+    assert motion["is_right"], motion["checks"]
+    (event,) = motion["events"]
+    # 0.5 N m on 0.2 kg m^2 and on the hull's 4
+    assert (event["name"], event["kind"], event["t"]) == ("s.spin", "stick", pytest.approx(1 / (0.5 / 0.2 + 0.5 / 4)))
+    assert np.linalg.norm(event["q"][3:7]) == pytest.approx(1, abs=1e-14)
+    wrong = client.post("/v1/trees/satellite/simulations", json=start)
+    assert wrong.json()["errors"][0]["code"] == "no-friction", wrong.text
 
 
 def test_the_satellite_leaves_as_an_fmu(satellite: TestClient) -> None:

@@ -194,7 +194,7 @@ def _judged(s: Constrained, problem: ClosedProblem, motion: IntegratedMotion, ra
         dry = ClosedDryMotion(s)
         judged["friction"], forces = dry.friction(motion, t, x), partial(_dry_forces, dry, motion)
         checks = (*checks, sticking(dry, motion, t, judged["friction"], problem.drift_limit))
-        told = motion.told(s.model.coordinates, dry.laws)
+        told = motion.told(s.model.coordinates, dry.laws, slice(s.n, 2 * s.n))
     span = reached(t, *np.split(x[:, :-1], 2, axis=1))
     t, x = t[results], x[results]
     q, qd = np.split(x[:, :-1], 2, axis=1)

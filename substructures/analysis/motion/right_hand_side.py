@@ -187,6 +187,10 @@ class RightHandSide:
         """x' at (t, x)."""
         # x' = (q', q'', power), q'' = g^-1 (Q - Gamma q' q')
         acceleration, _, power = self.evaluate(t, x)
+        return self.changes(x, acceleration, power)
+
+    def changes(self, x: Array, acceleration: Array, power: float) -> Array:
+        """x' of these (n,), at the state x of the last evaluation."""
         m, v = self.m, self.rates
         result = np.empty(len(x))
         result[:m] = self._written[0, :m] if self._first else x[v]

@@ -264,7 +264,7 @@ def _told(
     if isinstance(f, DecidedContacts):
         found = f.told
     elif isinstance(motion, DryRun):
-        found = motion.told(model.coordinates, _dry(conditions, f).laws)
+        found = motion.told(model.coordinates, _dry(conditions, f).laws, f.rates)
     told = in_order(crossings(problem.events, motion.found, f.rates), found)
     return tuple(told_with_lengths(model, event) for event in told)
 

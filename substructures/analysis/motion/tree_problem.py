@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 from substructures.analysis.motion.integrators.compiled_steps import EXPLICIT
-from substructures.analysis.motion.integrators.steppers import METHODS
 from substructures.analysis.motion.problems.kinds import TreeMotion
 from substructures.analysis.motion.problems.problem import MotionProblem
 from substructures.analysis.motion.resets import acting
@@ -28,8 +27,6 @@ class TreeProblem(MotionProblem):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        if self.model.balls:
-            self._require_known_of_balls()
         if self.kind.friction in WHY_NOT and self.integrator.fixed_step:
             message = f"{WHY_NOT[self.kind.friction]}: leave 'fixed_step' out"
             raise InvalidArgument.at("/friction", "not-supported", message)
@@ -42,13 +39,3 @@ class TreeProblem(MotionProblem):
             i = next(i for i, event in enumerate(self.events) if event.reset)
             message = "events do not act beside contacts, which have impacts of their own: leave 'reset' out"
             raise InvalidArgument.at(f"/events/{i}/reset", "not-supported", message)
-
-    def _require_known_of_balls(self) -> None:
-        known: dict[str, tuple[bool, str]] = {
-            "method": (self.integrator.fixed_step is not None or self.integrator.method in METHODS, ", ".join(METHODS)),
-            "friction": (self.kind.friction == "regularised", "regularised"),
-        }
-        for name, (is_known, instead) in known.items():
-            if not is_known:
-                message = f"with ball and floating joints '{name}' is one of: {instead}"
-                raise InvalidArgument.at(f"/{name}", "not-supported", message)

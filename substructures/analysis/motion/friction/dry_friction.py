@@ -71,11 +71,11 @@ class FrictionLaws:
         """What the formulas of the model have, (..., k)."""
         return np.asarray(-self.slipping(rates) * np.tanh(rates / self.velocity))
 
-    def rest(self, k: int, n: int, sign: int) -> Watch:
-        """Where a joint of a motion (q, q', ...) of n coordinates that slips comes to rest: its rate against its way,
-        so that a start the wrong way counts, too.
+    def rest(self, k: int, m: int, sign: int) -> Watch:
+        """Where a joint of a motion (q, q', ...) of m numbers q that slips comes to rest: its rate against its way, so
+        that a start the wrong way counts, too.
         """
-        place, least = n + int(self.places[k]), REST * self.velocity[k]
+        place, least = m + int(self.places[k]), REST * self.velocity[k]
         return Watch("rest", lambda _, x: float(sign * x[place] + least), -1)
 
 
@@ -96,12 +96,14 @@ def friction_laws(model: Model, values: dict[str, float]) -> FrictionLaws:
 
 
 class DryMotion:
-    """x' = f(t, x), x = (q, q', W), while the joints with friction slip or stick as ``signs`` say. Not for several
-    threads at a time.
+    """x' = f(t, x), x with m numbers q, n rates and W, while the joints with friction slip or stick as ``signs`` say.
+    Not for several threads at a time.
     """
 
     def __init__(self, f: RightHandSide, conditions: Conditions, laws: FrictionLaws) -> None:
         self.f, self.laws, self.n, self.enter = f, laws, f.n, f.enter
+        #: of the rates of joints with friction, in a state
+        self._places = f.m + laws.places
         self.signs: Signs = np.zeros(len(laws.places), dtype=np.int64)
         self._rates = DryRates(f, conditions.model, tuple(laws.places.tolist()), laws.numbers)
 
@@ -111,16 +113,12 @@ class DryMotion:
 
     def __call__(self, t: float, x: Array) -> Array:
         """x' at (t, x)."""
-        n, result = self.n, np.empty(len(x))
-        result[:n] = x[n : 2 * n]
-        result[n : 2 * n], _, power = self.moved(t, x, self.signs)
-        if self.f.has_power:
-            result[2 * n] = power
-        return result
+        second, _, power = self.moved(t, x, self.signs)
+        return self.f.changes(x, second, power)
 
     def moved(self, t: float, x: Array, signs: Signs) -> tuple[Array, Array, float]:
         """q'' (n,), the friction of the joints that have some (k,), and the power of all forces without potential."""
-        places, v = self.laws.places, x[self.n + self.laws.places]
+        places, v = self.laws.places, x[self._places]
         free, W, power = self._freed(t, x)
         force = -signs * self.laws.slipping(v)
         second = free + W @ force
@@ -141,16 +139,16 @@ class DryMotion:
         """Who slips and who sticks at a state, and the state with those at rest at rest."""
         laws = self.laws
         x = x.copy()
-        v = x[self.n + laws.places]
+        v = x[self._places]
         rest = np.flatnonzero(np.abs(v) <= 2 * REST * laws.velocity)
-        x[self.n + laws.places[rest]] = 0.0
+        x[self._places[rest]] = 0.0
         signs = np.sign(v).astype(np.int64)
         signs[rest] = 0
         # at rest the smooth law is zero
         free, W, _ = self._freed(t, x)
         # those that break away have the force of slipping, which may be less, so that others may follow
         while len(rest):
-            second = free - W @ (signs * laws.slipping(x[self.n + laws.places]))
+            second = free - W @ (signs * laws.slipping(x[self._places]))
             f = _least(W[np.ix_(laws.places[rest], rest)], second[laws.places[rest]], laws.static[rest])
             away = np.abs(f) >= (1 - EDGE) * laws.static[rest]
             if not away.any():
@@ -168,13 +166,13 @@ class DryMotion:
             return Watch("slip", lambda t, x: float(most - abs(self.moved(t, x, self.signs)[1][k])), -1)
 
         return [
-            breaks_away(k) if sign == 0 else self.laws.rest(k, self.n, sign)
+            breaks_away(k) if sign == 0 else self.laws.rest(k, self.f.m, sign)
             for k, sign in enumerate(self.signs.tolist())
         ]
 
     def instead(self, force: Array, x: Array) -> Array:
         """What the power (K,) of these forces (K, n) is more than that of the smooth law, at states x (K, ...)."""
-        v = x[:, self.n + self.laws.places]
+        v = x[:, self._places]
         return np.asarray(((force[:, self.laws.places] - self.laws.smooth(v)) * v).sum(axis=1))
 
     def _freed(self, t: float, x: Array) -> tuple[Array, Array, float]:
@@ -184,7 +182,7 @@ class DryMotion:
         unit = np.zeros((self.n, len(self.laws.places)))
         unit[self.laws.places, np.arange(len(self.laws.places))] = 1.0
         W = np.linalg.solve(self._rates.metric[0], unit)
-        v = x[self.n + self.laws.places]
+        v = x[self._places]
         smooth = self.laws.smooth(v)
         # the smooth law, which the formulas have, taken off
         return acceleration - W @ smooth, W, power - float(smooth @ v)

@@ -63,7 +63,7 @@ class DryForces:
         if self._made is None:
             n = forces.size
             self.forces, self.power = np.zeros((1, n)), np.zeros(1)
-            columns = [([f"v {a}" for a in range(n)], rates.x[:, n:]), ([f"Q {a}" for a in range(n)], forces)]
+            columns = [([f"v {a}" for a in range(n)], rates.x[:, -n:]), ([f"Q {a}" for a in range(n)], forces)]
             values = {
                 f"{name} {a}": self._numbers[k, j : j + 1]
                 for k, a in enumerate(self._places)
@@ -98,7 +98,8 @@ class DryRates:
         moving = np.setdiff1d(np.arange(self.f.n), self._places[signs == 0])
         closures = np.zeros((0, self.f.n)), np.zeros(0)
         rows = np.zeros(0, dtype=np.int64)
-        saddle = SaddlePoint(self.metric[0], *closures, forces[0], self._bias[0], rows, moving)
+        first = rates.written.size - self.f.n
+        saddle = SaddlePoint(self.metric[0], *closures, forces[0], self._bias[0], rows, moving, first)
         return replace(rates, calls=(*rates.calls, self.dynamics, call), power=power, saddle=saddle)
 
 

@@ -79,13 +79,15 @@ class DryRun(IntegratedMotion):
             second[i], force[i, f.laws.places], _ = f.moved(at, state, self.at(at))
         return second, force
 
-    def told(self, names: Sequence[str], laws: FrictionLaws) -> list[Crossing]:
-        """Joints that begin to stick and to slip after the start; ``names``: of all coordinates."""
-        n, found = len(names), list[Crossing]()
+    def told(self, names: Sequence[str], laws: FrictionLaws, rates: slice) -> list[Crossing]:
+        """Joints that begin to stick and to slip after the start; ``names``: of all coordinates, whose ``rates`` are
+        there in a state.
+        """
+        found = list[Crossing]()
         for t, x, before, now in zip(self.since[1:], self.starts[1:], self.signs, self.signs[1:], strict=False):
             for k in np.flatnonzero((np.asarray(before) == 0) != (np.asarray(now) == 0)).tolist():
                 kind = "slip" if now[k] else "stick"
-                found.append(Crossing(names[laws.places[k]], t, x[:n].copy(), x[n : 2 * n].copy(), kind=kind))
+                found.append(Crossing(names[laws.places[k]], t, x[: rates.start].copy(), x[rates].copy(), kind=kind))
         return found
 
     def undecided(self, t: float, x: Array, signs: Any, why: str) -> None:

@@ -124,7 +124,7 @@ class LoadedRightHandSide(RightHandSide):
     def evaluate(self, t: float, x: Array) -> tuple[Array, Array, float]:
         """(q'', pivots of the metric, power). Raises ArithmeticError where friction and reactions do not agree."""
         free, pivots, power = super().evaluate(t, x)
-        places, v = self.loads.places, x[self.n + self.loads.places]
+        places, v = self.loads.places, x[self.m + self.loads.places]
         self._metric()
         unit = np.zeros((self.n, len(places)))
         unit[places, np.arange(len(places))] = 1.0
