@@ -13,7 +13,7 @@ from substructures.documents.fields import Words
 from substructures.sweeps.document import SweepDocument
 
 LONGEST_LABEL = 200
-COMPUTED = "whether the result has the seal of this server; false: an older version kept it, or it came from elsewhere"
+COMPUTED = "whether the result has the seal of this server; false: an older version kept or queued it, or others"
 ItemsKind = Literal[
     "assemble",
     "evaluate",

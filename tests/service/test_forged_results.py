@@ -21,8 +21,11 @@ from service.database.job_tables import results
 from service.database.seal_keys import BYTES
 from service.database.seals import seal
 from service.database.tables import idempotency, parts, renewals, versions
+from service.messages.viewer import ANYBODY
+from service.operations.jobs import jobs
 from service.operations.renewing import Renewal
 from service.operations.verification import verify_all
+from service.queries.jobs.jobs import NewItem, add_job
 from service.queries.jobs.results import Result, put_results
 from service.settings import Settings
 from service.store.store import Store
@@ -149,17 +152,28 @@ def test_what_belongs_to_a_result_is_sealed(case: str, client: TestClient, store
     assert (again["attempts"], force(client, again["id"])) == (1, right(0.3))
 
 
+def test_an_item_under_the_key_of_another_is_of_no_use_to_that(client: TestClient, store: Store) -> None:
+    """What this server computes of a forged item has no seal of that key."""
+    wanted, other = (jobs.prepare(store, ANYBODY, at(q)).items[0] for q in (0.3, 1.2))
+    with store.database.write() as connection:
+        job = add_job(connection, "evaluate", ANYBODY, [NewItem(wanted.key, other.item, other.blobs)])
+    assert finished(client, job)["state"] == "succeeded"
+    assert (force(client, job), items(client, job)[0]["computed_here"]) == (right(1.2), False)
+    again = finished(client, submitted(client, at(0.3)))
+    assert (again["attempts"], force(client, again["id"])) == (1, right(0.3))
+
+
 def test_what_is_asked_for_by_get_is_computed_anew(client: TestClient, store: Store) -> None:
     """The job that it has become already is of no use when its result is forged."""
     path, headers = "/v1/trees/cell/export?target=c&quantities=forces", {"Prefer": "respond-async"}
-    jobs = list[Any]()
+    made = list[Any]()
     for statement in ("SELECT 1", "SELECT 1", "UPDATE results SET summary = '{}', digest = ''"):
         done(store, statement)
         answer = client.get(path, headers=headers)
         assert answer.status_code == 202, answer.text
-        jobs.append(finished(client, answer.json()["id"]))
-    assert jobs[0]["id"] == jobs[1]["id"] != jobs[2]["id"]
-    assert (jobs[2]["state"], jobs[2]["attempts"]) == ("succeeded", 1)
+        made.append(finished(client, answer.json()["id"]))
+    assert made[0]["id"] == made[1]["id"] != made[2]["id"]
+    assert (made[2]["state"], made[2]["attempts"]) == ("succeeded", 1)
 
 
 def test_a_damaged_result_is_computed_anew_after_a_repair(client: TestClient, store: Store) -> None:
@@ -273,20 +287,20 @@ def test_a_store_without_its_key(tmp_path: Path) -> None:
         client = make_client(store)
         for kind, body in (("substructures", PENDULUM), ("trees", TREE)):
             assert client.post(f"/v1/{kind}", json=body, headers={"Idempotency-Key": kind}).status_code == 201
-        jobs = [finished(client, submitted(client, body))["id"] for body in (at(0.3), export("cell", "metric"))]
+        made = [finished(client, submitted(client, body))["id"] for body in (at(0.3), export("cell", "metric"))]
     backup(address, tmp_path / "saved")
     restore(tmp_path / "saved", other)
     with open_store(Settings(database=other, catalogue=False)) as store, running(store, FakeEngine()):
         client = make_client(store)
         assert Renewal(store).all() == 0
         assert {what.split()[0] for what in faults(store)} == {"result", "answer"}
-        for job in jobs:
+        for job in made:
             told(client.get(f"/v1/jobs/{job}/items"), "submit its job again")
         told(client.post("/v1/trees", json=TREE, headers={"Idempotency-Key": "trees"}), "under another key")
         assert finished(client, submitted(client, at(0.3)))["attempts"] == 1
-        assert force(client, jobs[0]) == right(0.3)
+        assert force(client, made[0]) == right(0.3)
     shutil.copy(tmp_path / "saved", tmp_path / "c.db")
     shutil.copy(tmp_path / "a.db.key", tmp_path / "c.db.key")
     with open_store(Settings(database=f"sqlite:///{tmp_path / 'c.db'}", catalogue=False)) as store:
         assert faults(store) == {}
-        assert force(make_client(store), jobs[0]) == right(0.3)
+        assert force(make_client(store), made[0]) == right(0.3)

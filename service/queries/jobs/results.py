@@ -32,7 +32,9 @@ class File:
 
 @dataclass(frozen=True, slots=True)
 class Result:
-    """What came of an item; ``summary`` is JSON. One that is not good is of an item that failed."""
+    """What came of an item; ``summary`` is JSON. One that is not good is of an item that failed; ``is_of_key``: whether
+    the key is that of what was computed, by the software that did.
+    """
 
     key: str
     kind: str
@@ -40,6 +42,7 @@ class Result:
     files: Mapping[str, bytes]
     principal: str = ""
     is_good: bool = True
+    is_of_key: bool = True
 
     @property
     def size(self) -> int:
@@ -57,7 +60,7 @@ def put_results(connection: Connection, found: Sequence[Result]) -> None:
         if each.key not in stay:
             row, its = {**_row(each), "created": now()}, _files(each)
             seal = seal_of_result(connection, row, {file["name"]: file["digest"] for file in its})
-            rows.append({**row, "seal": seal})
+            rows.append({**row, "seal": seal if each.is_of_key else ""})
             files += its
     put_all(connection, results, rows)
     put_all(connection, result_files, files)
