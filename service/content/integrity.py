@@ -13,6 +13,8 @@ from contextlib import contextmanager
 from service.messages.refusals import Refused
 from substructures.errors import InvalidDocument, InvalidProgram
 
+#: what is wrong with what was changed, and with what came without the key
+NOT_SEALED = "it does not have the seal of this server"
 REMEDY = "restore a backup, or derive it anew with 'substructures verify --repair'"
 
 
@@ -21,9 +23,9 @@ def digest_of(content: bytes) -> str:
     return "sha256:" + hashlib.sha256(content).hexdigest()
 
 
-def damaged(what: str, digest: str, why: str) -> Refused:
+def damaged(what: str, digest: str, why: str, remedy: str = REMEDY) -> Refused:
     """500: the store has it, but not as it was stored. ``what``: e.g. ``the program of arm@2``."""
-    detail = f"{what}, {digest}, is damaged in the store: {why}; {REMEDY}"
+    detail = f"{what}, {digest}, is damaged in the store: {why}; {remedy}"
     return Refused(500, "damaged-content", detail, what=what, digest=digest)
 
 
@@ -34,11 +36,11 @@ def missing(what: str, digest: str) -> Refused:
     )
 
 
-def checked(what: str, digest: str, content: bytes) -> bytes:
+def checked(what: str, digest: str, content: bytes, remedy: str = REMEDY) -> bytes:
     """The content, whose digest is what it is called by. Raises Refused (``damaged-content``)."""
     found = digest_of(content)
     if found != digest:
-        raise damaged(what, digest, f"its bytes have the digest {found}")
+        raise damaged(what, digest, f"its bytes have the digest {found}", remedy)
     return content
 
 

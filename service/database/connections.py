@@ -17,7 +17,8 @@ from sqlalchemy.exc import ArgumentError, DBAPIError
 from service.database.clock import set_by
 from service.database.file import Claim, DatabaseError, Watch, require_store
 from service.database.schema import is_newest
-from service.database.seals import KEY, key_beside, key_in
+from service.database.seal_keys import key_beside, key_in
+from service.database.seals import KEY
 
 READERS = 16
 BUSY_MS = 10_000

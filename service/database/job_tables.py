@@ -11,7 +11,7 @@
       '---< job_uploads >--- uploads                       (chunks of states that items refer to, by digest)
 
 The key of an item is the sha256 of its kind, of the software and of what is to be computed, with all references
-pinned: equal items have equal results, whoever asks.
+pinned: equal items have equal results, whoever asks, where the result has the seal of this server.
 """
 
 from __future__ import annotations
@@ -111,6 +111,7 @@ results = Table(
     Column("size", BigInteger, nullable=False, server_default="0"),  # bytes of summary and files
     Column("is_good", Boolean, nullable=False, server_default=true()),  # whether its items have succeeded
     Column("digest", Text, nullable=False, server_default=""),  # sha256 of the summary; empty in older stores
+    Column("seal", Text, nullable=False, server_default=""),  # of this server, with the files; empty in older stores
     Index(None, "principal", "size"),
 )
 

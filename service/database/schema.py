@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from sqlalchemy import Engine, inspect, text
 
-NEWEST = "0018"  # revision of the newest migration
+NEWEST = "0019"  # revision of the newest migration
 
 
 class MigrationError(Exception):

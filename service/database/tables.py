@@ -155,6 +155,7 @@ versions = Table(
     _number("successor_version", nullable=True),
     _text("tree", nullable=True),  # the revision of a tree that was published as this version
     _number("tree_revision", nullable=True),
+    _default("seal", ""),  # of this server over name, number and digest
     UniqueConstraint("digest"),
     Index(None, "created"),
 )
@@ -280,6 +281,7 @@ idempotency = Table(
     _text("headers", nullable=True),
     Column("size", BigInteger, nullable=False, server_default="0"),  # bytes of the body
     Column("body", LargeBinary, nullable=True),  # NULL with a status: recompute (requests that store nothing)
+    _default("seal", ""),  # of this server over the request and its answer
     Index(None, "created"),
     Index(None, "principal", "size"),
 )

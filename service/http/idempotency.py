@@ -4,7 +4,7 @@
 
     claim (own transaction) -> prepare (computes, stores nothing) -> commit + answer kept (one transaction)
         |                          '-- fails: the claim is given up, the request may be sent again
-        |-- answered already: the same answer again
+        |-- answered already: the same answer again; 500 where it has not the seal of this server
         |-- other request under this key: 422
         '-- in flight: 409
 
@@ -23,6 +23,7 @@ from functools import cached_property
 import orjson
 from fastapi import Request
 
+from service.content.integrity import NOT_SEALED, damaged
 from service.database.connections import Connection
 from service.messages.answers import Answer
 from service.messages.refusals import Refused
@@ -30,6 +31,11 @@ from service.queries import idempotency
 from service.store.idempotency import LEASE
 from service.store.runtime import Computed
 from service.store.store import Store
+
+REMEDY = (
+    "the request was served, and is not served again: look at what it has made (GET /v1/audit says who did what), and "
+    "send what is still to be done under another key"
+)
 
 
 class IdempotencyClaim:
@@ -60,7 +66,7 @@ class IdempotencyClaim:
         return found.hexdigest()
 
     def claim(self) -> idempotency.Entry | None:
-        """Claim the key, once, or what was answered under it already. Raises Refused 409 or 422."""
+        """Claim the key, once, or what was answered under it already. Raises Refused 409, 422 or 500."""
         if not self.key or self._is_claimed:
             return None
         lifetime = timedelta(hours=self._store.settings.limits.idempotency_hours)
@@ -79,7 +85,7 @@ class IdempotencyClaim:
         return self._answered(entry)
 
     def known(self, computed: Computed) -> idempotency.Entry | None:
-        """What was answered under the key, which is not claimed. Raises Refused 409 or 422."""
+        """What was answered under the key, which is not claimed. Raises Refused 409, 422 or 500."""
         if not self.key:
             return None
         with self._database.read() as connection:
@@ -89,7 +95,9 @@ class IdempotencyClaim:
         return self._answered(entry)
 
     def _answered(self, entry: idempotency.Entry | None) -> idempotency.Entry | None:
-        """What is there, if it is of this request and has been answered."""
+        """What is there, if it is of this request and has been answered. Raises Refused 409, 422, and 500 for an answer
+        that this server has not given.
+        """
         if entry is None:
             return None
         if entry.fingerprint != self._fingerprint:
@@ -97,6 +105,8 @@ class IdempotencyClaim:
         if entry.status is None:
             detail = "the first request with this Idempotency-Key is still being served"
             raise Refused(409, "idempotency-in-flight", detail, headers={"Retry-After": "1"})
+        if not entry.is_ours:  # neither is it told as true, nor is what was done done again
+            raise damaged("the answer to the request", f"sha256:{entry.fingerprint}", NOT_SEALED, REMEDY)
         return entry
 
     def keep(self, connection: Connection, answer: Answer) -> None:
@@ -104,7 +114,7 @@ class IdempotencyClaim:
         if not self._is_claimed:
             return
         kept = (answer.status, orjson.dumps(dict(answer.headers)).decode(), answer.body)
-        if not idempotency.finish(connection, self._wanted, kept):
+        if not idempotency.finish(connection, self._wanted, self._fingerprint, kept):
             raise Refused(409, "idempotency-lost", "another request with this Idempotency-Key took over")
         self._store.usage.add("answer", self._principal, len(answer.body))
 

@@ -17,7 +17,7 @@ from service.messages.refusals import Refused
 from service.messages.viewer import OPEN, PUBLIC, Viewer
 from service.operations.owners import EITHER, absent_either, absent_part, absent_tree, may_have, private_parts
 from service.operations.sharing.provenance import derived_from
-from service.queries import catalogue, content, trees
+from service.queries import catalogue, content, renewals, trees, versions
 from service.queries.catalogue import Version
 from service.queries.owners import Kind, Ownership, ownership, ownerships
 from service.queries.owners import private_parts as hidden_parts
@@ -70,6 +70,10 @@ class StoreLibrary:
             return None
         marks = marks_of(found.certificate)
         return StoredVersion(found.name, found.digest, found.program, found.software, marks)
+
+    def wrong_number(self, version: StoredVersion) -> str:
+        """What is wrong with the number of a version, by its seal."""
+        return versions.wrong_number(self._connection, version.digest, renewals.is_ours(self._connection))
 
     def _tree(self, reference: str) -> StoredTree | None:
         ref = parse_reference(reference)

@@ -19,7 +19,7 @@ from service.database.connections import DBAPIError
 from service.messages.refusals import NotDerived, Refused
 from service.operations.renewal import OPERATOR, is_part_newest, is_tree_newest, renew_part, renew_tree
 from service.operations.verification import told
-from service.queries import content, renewals, trees
+from service.queries import content, renewals, trees, versions
 from service.store.store import Store
 
 SHARE = 1.0  # of the time of a piece of work that it rests afterwards, for those who wait for answers
@@ -85,7 +85,10 @@ class Renewal:
             if is_stopped(SHARE * (perf_counter() - begun)):
                 return failed
         with database.write() as connection:
+            taken = 0 if renewals.is_ours(connection) else versions.seal_numbers(connection)
             renewals.note(connection)
+        if taken:
+            _log.warning("the numbers of %d versions had no seal of this server; they are taken as they are", taken)
         if stale:
             _log.info("%d derived anew in %.1f s, %d could not be", len(stale), perf_counter() - start, failed)
         return failed

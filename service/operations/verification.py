@@ -15,13 +15,13 @@ from functools import partial
 from typing import Any
 
 from service.content.derivation import software
-from service.content.integrity import checked
+from service.content.integrity import NOT_SEALED, checked
 from service.content.summaries import PartContent
 from service.database.connections import Connection, Database
 from service.messages.refusals import Refused
 from service.messages.viewer import ANYBODY
 from service.operations.renewal import part_anew, read_tree, renew_part, renew_tree, tree_anew
-from service.queries import catalogue, content, renewals, trees
+from service.queries import catalogue, content, idempotency, renewals, trees, versions
 from service.queries.content import StoredPart
 from service.queries.jobs import results
 from service.queries.searching.formulas import FormulaRow, list_formulas, read_index
@@ -63,8 +63,9 @@ NOT_RENEWED = "not renewed yet, nor verified: another version derived it; a serv
 
 
 def verify_all(database: Database, repair: bool = False) -> Iterator[Finding]:
-    """Every part, every revision of every tree, and every result of a job, which is compared with its digest. With
-    ``repair`` what is wrong of parts and trees is derived anew, if its own document is sound.
+    """Every part with its number, every revision of every tree, every result of a job, which is compared with digest
+    and seal, and every answer kept under an idempotency key. With ``repair`` what is wrong of parts and trees is
+    derived anew, if its own document is sound; results that are wrong are computed anew when their jobs are submitted.
     """
     with database.read() as connection:
         contents = catalogue.all_contents(connection)
@@ -78,6 +79,18 @@ def verify_all(database: Database, repair: bool = False) -> Iterator[Finding]:
     for key in kept:
         if (found := _looked_at(database, f"result {key}", key, _check_result)).fault:
             yield found
+            if repair:
+                with database.write() as connection:
+                    results.unseal(connection, key)
+    yield from _wrong_answers(database)
+
+
+def _wrong_answers(database: Database) -> Iterator[Finding]:
+    with database.read() as connection:
+        wrong = list(idempotency.wrong_answers(connection))
+    for principal, key, fingerprint in wrong:
+        what = f"answer under the Idempotency-Key '{key}' of '{principal}'"
+        yield Finding(what, fingerprint, f"{NOT_SEALED}, and is not given again")
 
 
 def _check_result(connection: Connection, key: str) -> bool:
@@ -147,6 +160,8 @@ def _check_part(connection: Connection, digest: str) -> bool:
     else:
         _require_none(_wrong_of_part(content.get_row(connection, digest), made))
         _require_own(stored)
+    if wrong_number := versions.wrong_number(connection, digest, renewals.is_ours(connection)):
+        raise ValueError(wrong_number)
     if wrong := catalogue.wrong_latest(connection, digest):
         raise ValueError(f"what searches find of it is not what is stored of it: {', '.join(wrong)}")
     return not is_left

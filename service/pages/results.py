@@ -27,7 +27,11 @@ def results_section(job: Job, items: Sequence[JobItem], files: Mapping[str, Sequ
     rows = [(view["position"], *_row(view, item)) for view, item in zip(shown, items, strict=False)]
     more = tag("p", "There are more: ", link("all", f"{job_path(job.id)}/items?state=succeeded"), ".", class_="quiet")
     listed = table(("item", "became", "files"), rows)
-    return [tag("h2", "Results"), listed, more if len(items) > PREVIEWED else Html()]
+    others = ", ".join(str(view["position"]) for view in shown if not view["computed_here"])
+    told = tag(
+        "p", f"Kept by an older version or elsewhere, without the seal of this server: {others}.", class_="quiet"
+    )
+    return [tag("h2", "Results"), listed, told if others else Html(), more if len(items) > PREVIEWED else Html()]
 
 
 def _row(view: Mapping[str, Any], item: JobItem) -> tuple[Content, Content]:

@@ -14,7 +14,7 @@ from service.messages.refusals import NotDerived
 from service.messages.viewer import PUBLIC, Viewer
 from service.queries.common import now
 from service.queries.owners import reference, seen_by, visible
-from service.queries.seals import seal_of_part
+from service.queries.seals import seal_of_part, seal_of_version
 from service.queries.searching.terms import Term, exchange, stored_terms, terms_of
 
 _NAMES = ("name", "version", "digest", "created", "withdrawn_at", "withdrawal_reason", "author")
@@ -126,7 +126,7 @@ def add_version(
         return number, False
     number = wanted or connection.execute(_HIGHEST, {"of_name": name}).scalar_one() + 1
     row = {"name": name, "version": number, "digest": digest, "created": now(), "author": author}
-    connection.execute(_NEW, row | provenance.values())
+    connection.execute(_NEW, row | provenance.values() | {"seal": seal_of_version(connection, row)})
     _set_latest(connection, name)
     return number, True
 

@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from datetime import timedelta
+from typing import Any
 
-from sqlalchemy import Connection, bindparam, delete, select, update
+from sqlalchemy import Connection, RowMapping, bindparam, delete, select, update
 
+from service.content.integrity import digest_of
 from service.database.tables import idempotency
 from service.queries.common import insert_missing, now
+from service.queries.seals import seal_of_answer
 
 
 @dataclass(frozen=True, slots=True)
@@ -22,7 +26,9 @@ class Claim:
 
 @dataclass(frozen=True, slots=True)
 class Entry:
-    """A key as stored; ``status`` None: in flight; ``body`` None with a status: compute again (older versions)."""
+    """A key as stored; ``status`` None: in flight; ``body`` None with a status: compute again (older versions);
+    ``is_ours``: whether the answer has the seal of this server.
+    """
 
     fingerprint: str
     owner: str
@@ -30,6 +36,7 @@ class Entry:
     status: int | None
     headers: str | None
     body: bytes | None
+    is_ours: bool
 
 
 def claim(connection: Connection, wanted: Claim, fingerprint: str) -> Entry | None:
@@ -46,15 +53,34 @@ def renew(connection: Connection, held: Claim) -> bool:
 
 def find(connection: Connection, principal: str, key: str) -> Entry | None:
     """What is there under a key."""
-    found = connection.execute(_FIND, {"of_principal": principal, "of_key": key}).first()
-    return None if found is None else Entry(*found)
+    row = connection.execute(_FIND, {"of_principal": principal, "of_key": key}).mappings().first()
+    if row is None:
+        return None
+    is_ours = row["seal"] == _seal(connection, row)
+    values: list[Any] = [*(row[name] for name in Entry.__slots__[:-1]), is_ours]
+    return Entry(*values)
 
 
-def finish(connection: Connection, held: Claim, answer: tuple[int, str, bytes | None]) -> bool:
-    """Keep the answer (status, headers, body); False when the claim is no longer ours."""
+def finish(connection: Connection, held: Claim, fingerprint: str, answer: tuple[int, str, bytes | None]) -> bool:
+    """Keep the answer (status, headers, body) of a request; False when the claim is no longer ours."""
     status, headers, body = answer
-    kept = {"its_status": status, "its_headers": headers, "its_body": body, "its_size": len(body or b"")}
-    return bool(connection.execute(_FINISH, {**_held(held), **kept}).rowcount)
+    kept: dict[str, Any] = {"status": status, "headers": headers, "body": body}
+    request = {"principal": held.principal, "key": held.key, "fingerprint": fingerprint}
+    kept |= {"size": len(body or b""), "seal": _seal(connection, request | kept)}
+    return bool(connection.execute(_FINISH, _held(held) | {f"its_{name}": x for name, x in kept.items()}).rowcount)
+
+
+def wrong_answers(connection: Connection) -> Iterator[tuple[str, str, str]]:
+    """Principals, keys and fingerprints of answers that have another seal than that of this server."""
+    for row in connection.execute(_SEALED).mappings():
+        if row["seal"] != _seal(connection, row):
+            yield row["principal"], row["key"], row["fingerprint"]
+
+
+def _seal(connection: Connection, row: Mapping[str, Any] | RowMapping) -> str:
+    body = row["body"] or b""
+    digest = digest_of(body if isinstance(body, bytes) else repr(body).encode())  # SQLite keeps any type anywhere
+    return seal_of_answer(connection, row, digest)
 
 
 def release(connection: Connection, held: Claim) -> None:
@@ -76,12 +102,13 @@ def _held(held: Claim) -> dict[str, str]:
 _IS = (idempotency.c.principal == bindparam("of_principal")) & (idempotency.c.key == bindparam("of_key"))
 _IS_CLAIM, _IS_OLD = idempotency.c.status.is_(None), idempotency.c.created < bindparam("before")
 _IN_FLIGHT = _IS & (idempotency.c.owner == bindparam("of_owner")) & _IS_CLAIM
-_FIND = select(*(idempotency.c[name] for name in Entry.__slots__)).where(_IS)
+_FIND = select(idempotency).where(_IS)
+_SEALED = select(idempotency).where(~_IS_CLAIM, idempotency.c.seal != "").execution_options(yield_per=100)
 _RENEW = update(idempotency).where(_IN_FLIGHT).values(created=bindparam("its_created"))
 _FINISH = (
     update(idempotency)
     .where(_IN_FLIGHT)
-    .values({name: bindparam(f"its_{name}") for name in ("status", "headers", "body", "size")})
+    .values({name: bindparam(f"its_{name}") for name in ("status", "headers", "body", "size", "seal")})
 )
 _RELEASE = delete(idempotency).where(_IN_FLIGHT)
 _OLD_ANSWERS, _OLD_CLAIMS = (delete(idempotency).where(_IS_OLD, which) for which in (~_IS_CLAIM, _IS_CLAIM))

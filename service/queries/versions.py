@@ -1,15 +1,16 @@
-"""All versions of a part and all revisions of a tree, the newest first."""
+"""All versions of a part and all revisions of a tree, the newest first; seals of the numbers of versions."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from typing import Any
 
-from sqlalchemy import Connection, Select, func, select
+from sqlalchemy import Connection, Select, bindparam, func, select, update
 
 from service.database.tables import parts, substructures, tree_names, trees, versions
 from service.messages.viewer import Viewer
 from service.queries.owners import reference, seen_by, visible
+from service.queries.seals import VERSION, seal_of_version
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,6 +72,37 @@ def page_revisions(
     return [RevisionEntry(*row) for row in rows]
 
 
+def wrong_number(connection: Connection, digest: str, is_sealed: bool) -> str:
+    """What is wrong with the name and number of a content by the seal that they have to have, empty where nothing is or
+    it has none; ``is_sealed``: one without a seal is wrong, too.
+    """
+    row = connection.execute(_NUMBERS.where(versions.c.digest == digest)).mappings().first()
+    if row is None or row["seal"] == seal_of_version(connection, row) or not (row["seal"] or is_sealed):
+        return ""
+    name, found = row["name"], f"{row['name']}@{row['version']}"
+    others = connection.execute(_NUMBERS.where(versions.c.name == name)).mappings().all()
+    seals = {x["seal"] for x in others}
+    was = [x["version"] for x in others if seal_of_version(connection, {**x, "digest": digest}) in seals]
+    told = f"it was {name}@{was[0]}, and is {found} now" if was else f"its number {found} does not have its seal"
+    return f"{told}: contents of versions were exchanged in the store; restore a backup"
+
+
+def seal_numbers(connection: Connection) -> int:
+    """Seal names and numbers of all contents as they are: of how many that was to be done."""
+    rows = connection.execute(_NUMBERS).mappings().all()
+    right = [{"of_name": x["name"], "of_version": x["version"], "its": seal_of_version(connection, x)} for x in rows]
+    wrong = [new for new, row in zip(right, rows, strict=True) if new["its"] != row["seal"]]
+    if wrong:
+        connection.execute(_SEAL, wrong)
+    return len(wrong)
+
+
+_NUMBERS = select(*(versions.c[name] for name in (*VERSION, "seal")))
+_SEAL = (
+    update(versions)
+    .where(versions.c.name == bindparam("of_name"), versions.c.version == bindparam("of_version"))
+    .values(seal=bindparam("its"))
+)
 _EARLIER = versions.alias("earlier")
 _VERSIONS: Select[Any] = (
     select(

@@ -13,6 +13,7 @@ from substructures.documents.fields import Words
 from substructures.sweeps.document import SweepDocument
 
 LONGEST_LABEL = 200
+COMPUTED = "whether the result has the seal of this server; false: an older version kept or queued it, or others"
 ItemsKind = Literal[
     "assemble",
     "evaluate",
@@ -187,6 +188,7 @@ class ItemView(BaseModel):
     finished: Time | None
     problem: dict[str, Any] | None
     result: dict[str, Any] | None
+    computed_here: bool | None = Field(description=COMPUTED)
     files: list[FileView]
 
 

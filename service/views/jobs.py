@@ -92,6 +92,7 @@ def item_view(job: str, item: JobItem, files: Sequence[File]) -> dict[str, Any]:
         "finished": item.finished,
         "problem": None if item.problem is None else orjson.Fragment(item.problem),
         "result": None if item.summary is None else orjson.Fragment(item.summary),
+        "computed_here": item.computed_here,
         "files": [_file(job, item, file) for file in files],
     }
 

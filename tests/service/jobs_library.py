@@ -58,6 +58,9 @@ class MemoryLibrary:
             None if part is None else StoredVersion(part.name, part.definition.digest, part.program.digest, software())
         )
 
+    def wrong_number(self, _version: StoredVersion) -> str:
+        return ""
+
     def tree(self, reference: str) -> StoredTree | None:
         return self._trees.get(reference.partition("@")[0])
 

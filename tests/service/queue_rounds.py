@@ -9,14 +9,17 @@ from typing import Any
 import pytest
 
 from service.app import open_store
+from service.content.derivation import release
 from service.database.job_tables import job_events, job_items, job_uploads, jobs, result_files, results, uploads
 from service.jobs.engines.engine import Outcome
 from service.messages.viewer import ANYBODY
+from service.operations.jobs.submission import key_of
 from service.queries.jobs import jobs as queries
 from service.queries.jobs.jobs import NewItem
 from service.queue.rounds import Ended, Played, Round, play
 from service.settings import Settings
 from service.store.store import Store
+from substructures.documents import write_json
 
 from .databases import fresh
 
@@ -49,10 +52,16 @@ OVER = timedelta(seconds=-1)
 DONE = Outcome({"n": 1}, {"result": b"data"})
 
 
-def add(store: Store, *keys: str) -> str:
-    """A job with items of these keys."""
+def item(name: str) -> NewItem:
+    """An item with its key, as it is submitted."""
+    content = write_json({"name": name})
+    return NewItem(key_of("export", {}, content, release()), content.decode(), "[]")
+
+
+def add(store: Store, *names: str) -> str:
+    """A job with items of these names."""
     with store.database.write() as connection:
-        return queries.add_job(connection, "export", ANYBODY, [NewItem(key, "{}", "[]") for key in keys])
+        return queries.add_job(connection, "export", ANYBODY, [item(name) for name in names])
 
 
 def round_of(store: Store, owner: str, *ended: Ended, wanted: int = 0, lease: timedelta = LEASE, **more: Any) -> Played:

@@ -12,6 +12,7 @@ from service.database.connections import Database
 from service.database.tables import parts, trees
 from service.queries.seals import seal_of_part, seal_of_tree
 from service.queries.searching.formulas import index_digest
+from service.queries.versions import seal_numbers
 
 
 def seal_again(store: Path | str, software: str | None = None, only: Collection[str] = ()) -> None:
@@ -27,6 +28,7 @@ def seal_again(store: Path | str, software: str | None = None, only: Collection[
             found = {**row, **named, "index_digest": index_digest(row["outputs"], row["formulas"])}
             values = {**named, "index_digest": found["index_digest"], "seal": seal_of_part(connection, found)}
             connection.execute(update(parts).where(parts.c.digest == row["digest"]).values(values))
+        seal_numbers(connection)
         for row in connection.execute(select(trees)).mappings().all():
             found = {**row, **named}
             revision = (trees.c.name == row["name"]) & (trees.c.revision == row["revision"])

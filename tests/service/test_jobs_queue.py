@@ -13,7 +13,7 @@ from service.queue import rounds
 from service.queue.rounds import Ended
 from service.store.store import Store
 
-from .queue_rounds import DONE, LEASE, OVER, add, job_of, opened, round_of, states, store
+from .queue_rounds import DONE, LEASE, OVER, add, item, job_of, opened, round_of, states, store
 
 __all__ = ["opened", "store"]  # fixtures
 
@@ -66,11 +66,11 @@ def test_free_places_are_shared_between_jobs(store: Store) -> None:
 def test_twins_wait_for_each_other(store: Store) -> None:
     one, two = add(store, "a", "a", "b"), add(store, "a")
     claimed = round_of(store, "me", wanted=10).claimed
-    assert sorted(a.key for a in claimed) == ["a", "b"]
-    a, b = sorted(claimed, key=lambda each: each.key)
+    a, b = sorted(claimed, key=lambda each: each.item)
+    assert [a.key, b.key] == [item("a").key, item("b").key]
     played = round_of(store, "me", Ended(a, Outcome(problem={"status": 422})), wanted=10)
     (again,) = played.claimed  # a failure is the item's own: the next one tries for itself
-    assert again.key == "a"
+    assert again.key == a.key
     played = round_of(store, "me", Ended(again, DONE), Ended(b, DONE), wanted=10)
     assert played.claimed == []
     assert {job_of(store, one).state, job_of(store, two).state} == {"succeeded"}

@@ -18,7 +18,7 @@ from service.queries.jobs.job_events import events_after
 from service.queue.rounds import Ended
 from service.store.store import Store
 
-from .queue_rounds import DONE, OVER, add, job_of, opened, round_of, states, store
+from .queue_rounds import DONE, OVER, add, item, job_of, opened, round_of, states, store
 
 __all__ = ["opened", "store"]  # fixtures
 
@@ -125,8 +125,9 @@ def test_retention(store: Store) -> None:
         connection.execute(jobs.update().where(jobs.c.id == old).values(finished=now(timedelta(days=-40))))
         before = now(timedelta(days=-30))
         assert [removal.remove_finished(connection, before, 1) for _ in range(2)] == [1, 0]
+    left = {item("b").key, item("c").key}
     with store.database.read() as connection:
         assert queries.get_job(connection, old) is None
-        assert set(connection.execute(sa.select(results.c.key)).scalars()) == {"b", "c"}
-        assert set(connection.execute(sa.select(result_files.c.key)).scalars()) == {"b", "c"}
+        assert set(connection.execute(sa.select(results.c.key)).scalars()) == left
+        assert set(connection.execute(sa.select(result_files.c.key)).scalars()) == left
     assert (job_of(store, young).state, job_of(store, running).state) == ("succeeded", "queued")

@@ -14,7 +14,7 @@ from service.app import open_store
 from service.cli.main import main
 from service.database.connections import Database
 from service.database.file import DatabaseError
-from service.database.seals import BYTES
+from service.database.seal_keys import BYTES
 from service.settings import Settings
 
 from .conftest import PENDULUM, SLIDER, make_client

@@ -20,7 +20,7 @@ from substructures import Part, TreeSpec, couple, derive
 from substructures.documents import read_json, write_json
 
 from .conftest import HAND, PENDULUM, TREE, make_client
-from .test_old_stores import OLD, unpacked
+from .test_old_stores import unpacked
 
 LOAD = {"type": "spring", "name": "rope", "from": "world", "to": "arm.tip", "stiffness": "k", "length": 1}
 LOADED = {**TREE, "loads": [LOAD], "parameters": {**TREE["parameters"], "k": {"value": 3, "unit": "N/m"}}}
@@ -70,7 +70,7 @@ def test_trees_of_one_shape_have_a_form_in_common(tmp_path: Path) -> None:
 
 
 def test_what_is_stored_whole_is_stored_in_parts_when_it_is_coupled_anew(tmp_path: Path) -> None:
-    path = unpacked(OLD[-1], tmp_path)
+    path = unpacked("0017", tmp_path)
     query = "SELECT summary_form IS NULL FROM trees"
     with open_store(Settings(database=f"sqlite:///{path}", catalogue=False, key_seconds=0)) as store:
         with closing(sqlite3.connect(path)) as connection:

@@ -44,6 +44,9 @@ class Library(Protocol):
     def version(self, reference: str) -> StoredVersion | None:
         """The version that a reference means (``name``, ``name@3``, ``name@alias``, ``name@sha256:...``)."""
 
+    def wrong_number(self, version: StoredVersion, /) -> str:
+        """What is wrong with the number of a version, by its seal; empty where nothing is."""
+
     def tree(self, reference: str) -> StoredTree | None:
         """The revision of a tree that a reference means."""
 

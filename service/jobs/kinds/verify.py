@@ -56,6 +56,8 @@ def _pinned_part(item: ItemDocument, library: Library) -> tuple[ItemDocument, tu
     if version.software != software():
         raise NotDerived("part", version.digest)
     pinned = {"substructure": f"{version.name}@{version.digest}", "program": version.program}
+    if fault := library.wrong_number(version):
+        pinned["fault"] = fault
     return {**item, **pinned, **recipe_member(version, library)}, (version.digest, version.program)
 
 
@@ -85,6 +87,8 @@ def _part(item: ItemDocument, blobs: Blobs) -> Outcome:
     if part.definition.name != name:
         raise VerificationFailed(f"it is called '{name}' in the store, and '{part.definition.name}' in its document")
     _require_same(item["program"], part.program)
+    if "fault" in item:
+        raise VerificationFailed(item["fault"])
     return _outcome(name, digest, part.certificate, {"warnings": part.certificate["warnings"]})
 
 

@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterable, Mapping
 from dataclasses import replace
 from typing import Any
 
+from service.content.derivation import release
 from service.content.improvement import Improvement
 from service.content.integrity import checked
 from service.content.summaries import UNKNOWN, PartContent
@@ -20,6 +21,7 @@ from service.messages.addresses import tree_path, version_path
 from service.messages.viewer import Viewer
 from service.operations import catalogue, trees
 from service.operations.catalogue import PartSubmission
+from service.operations.jobs.submission import key_of
 from service.operations.preconditions import Expected
 from service.operations.renewal import TreeProgram, put_part, put_tree
 from service.operations.sharing.provenance import IMPORTED, Origin
@@ -67,7 +69,9 @@ def _result(connection: Connection, viewer: Viewer, attempt: Attempt, outcome: O
         case _:
             files = outcome.files
     told = write_json({**outcome.summary, **stored}).decode()
-    return results.Result(attempt.key, attempt.kind, told, files, is_good=outcome.problem is None)
+    content = attempt.item.encode()
+    is_of_key = attempt.key == key_of(attempt.kind, read_json(content), content, release())
+    return results.Result(attempt.key, attempt.kind, told, files, is_good=outcome.problem is None, is_of_key=is_of_key)
 
 
 def _tree(connection: Connection, viewer: Viewer, item: Mapping[str, Any], outcome: Outcome) -> dict[str, Any]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 import secrets
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
@@ -15,7 +14,7 @@ from service.jobs import kinds
 from service.jobs.files import document_of
 from service.messages.refusals import SHOWN, Refused, not_found
 from service.messages.viewer import Viewer
-from service.operations.jobs.submission import JobSubmission, Skipped
+from service.operations.jobs.submission import JobSubmission, Skipped, key_of
 from service.operations.library import Reader, StoreLibrary
 from service.operations.owners import require
 from service.queries import audit
@@ -162,9 +161,7 @@ def _resolved(
 
 def _new_item(kind: str, item: Mapping[str, Any], blobs: Sequence[str]) -> NewItem:
     content = write_json(item)
-    family = "analyse" if "analysis" in item else kind  # items of simulate and optimise say what they are
-    key = "sha256:" + hashlib.sha256(f"{family}\n{release()}\n".encode() + content).hexdigest()
-    return NewItem(key, content.decode(), write_json(list(blobs)).decode())
+    return NewItem(key_of(kind, item, content, release()), content.decode(), write_json(list(blobs)).decode())
 
 
 def require_room(connection: Connection, new: int, principal: str, limits: Limits) -> None:

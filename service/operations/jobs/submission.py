@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import hashlib
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 from service.queries.jobs.jobs import NewItem
 from substructures.errors import Fault
@@ -28,3 +30,9 @@ class JobSubmission:
     skipped: Sequence[Skipped] = ()
     label: str = ""
     retry_of: str | None = None
+
+
+def key_of(kind: str, item: Mapping[str, Any], content: bytes, software: str) -> str:
+    """The key of an item, whose JSON the ``content`` is, that ``software`` computes."""
+    family = "analyse" if "analysis" in item else kind  # items of simulate and optimise say what they are
+    return "sha256:" + hashlib.sha256(f"{family}\n{software}\n".encode() + content).hexdigest()

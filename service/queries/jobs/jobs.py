@@ -16,7 +16,7 @@ from service.database.job_tables import job_items, jobs, results
 from service.messages.viewer import Viewer
 from service.queries.common import now
 from service.queries.jobs.job_events import add_event
-from service.queries.jobs.results import as_kept
+from service.queries.jobs.results import TOGETHER, are_ours, as_kept, vouched
 from service.queries.jobs.states import OPEN, QUEUED, RUNNING
 
 
@@ -55,7 +55,8 @@ class Job:
 @dataclass(frozen=True, slots=True)
 class JobItem:
     """An item as stored, with the summary of its result; ``deaths``, ``problem``, ``summary`` and ``item``, which is
-    read of those that failed, are JSON.
+    read of those that failed, are JSON. ``computed_here``: whether the result has the seal of this server, where there
+    is one.
     """
 
     position: int
@@ -69,6 +70,7 @@ class JobItem:
     finished: str | None
     item: str | None
     summary: str | None
+    computed_here: bool | None
 
 
 @dataclass(frozen=True, slots=True)
@@ -125,10 +127,12 @@ def share_results(connection: Connection, exclusive: bool = False) -> None:
 
 
 def succeed_known(connection: Connection, job: str) -> list[int]:
-    """Queued items of a locked job whose result is there succeed: their positions."""
-    chosen = and_(job_items.c.job == job, QUEUED, job_items.c.key.in_(select(results.c.key).where(results.c.is_good)))
-    done = update(job_items).where(chosen).values(state="succeeded", fraction=1.0, finished=now())
-    return sorted(connection.execute(done.returning(job_items.c.position)).scalars())
+    """Queued items of a locked job whose result is there, under the seal of this server, succeed: their positions."""
+    is_there = exists().where(results.c.key == job_items.c.key, results.c.is_good)
+    there = select(job_items.c.key).distinct().where(job_items.c.job == job, QUEUED, is_there)
+    known = sorted(vouched(connection, connection.execute(there).scalars().all()))
+    parts = (known[start : start + TOGETHER] for start in range(0, len(known), TOGETHER))
+    return sorted(position for keys in parts for position in succeed_equal(connection, [job], keys).get(job, ()))
 
 
 def succeed_equal(connection: Connection, ids: Collection[str], keys: Sequence[str]) -> dict[str, list[int]]:
@@ -209,22 +213,24 @@ def page_jobs(
 
 
 def page_items(connection: Connection, job: str, state: str | None, after: int, size: int) -> list[JobItem]:
-    """Up to ``size`` items that follow the position ``after``."""
-    names = [name for name in JobItem.__slots__ if name not in ("summary", "item")]
+    """Up to ``size`` items that follow the position ``after``. Raises Refused (``damaged-content``)."""
+    names = [name for name in JobItem.__slots__ if name not in ("summary", "item", "computed_here")]
     is_its = results.c.is_good == (job_items.c.state == "succeeded")
-    summary = case((job_items.c.state.in_(("succeeded", "failed")) & is_its, results.c.summary))
+    summary = case((job_items.c.state.in_(("succeeded", "failed")) & is_its, results.c.summary)).label("summary")
     item = case((job_items.c.state == "failed", job_items.c.item))
     columns: list[Any] = [*(job_items.c[name] for name in names), item, summary, results.c.digest]
     query = select(*columns).select_from(job_items.outerjoin(results, results.c.key == job_items.c.key))
     query = query.where(job_items.c.job == job, job_items.c.position > after)
     if state is not None:
         query = query.where(job_items.c.state == state)
-    return [_item(*row) for row in connection.execute(query.order_by(job_items.c.position).limit(size)).all()]
+    rows = connection.execute(query.order_by(job_items.c.position).limit(size)).all()
+    ours = are_ours(connection, {row.key for row in rows if row.summary is not None})
+    return [_item(*row, None if row.summary is None else ours[row.key]) for row in rows]
 
 
 def _item(*columns: Any) -> JobItem:
     """Raises Refused (``damaged-content``) for a summary that is not the one that was kept."""
-    found, digest = columns[:-1], columns[-1]
+    found, digest = (*columns[:-2], columns[-1]), columns[-2]
     item = JobItem(*found)
     if item.summary is not None:
         as_kept("a result", digest, item.summary.encode())

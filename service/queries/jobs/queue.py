@@ -13,10 +13,11 @@ from typing import Any
 import orjson
 from sqlalchemy import ColumnElement, Connection, and_, bindparam, exists, func, select, tuple_, update
 
-from service.database.job_tables import job_items, jobs, results
+from service.database.job_tables import job_items, jobs
 from service.queries.attempts import Attempt, Changes, Lost, attempt_id
 from service.queries.common import now
 from service.queries.jobs import jobs as job_queries
+from service.queries.jobs.results import vouched
 from service.queries.jobs.states import QUEUED, RUNNING
 
 _FINISH = (
@@ -87,7 +88,7 @@ def _take(
     # what was lost before goes behind the others, so that it neither holds them up nor uses its attempts up
     rows = connection.execute(query.order_by(job_items.c.attempts, job_items.c.position).limit(size)).all()
     keys = [row.key for row in rows]
-    known = set(connection.execute(select(results.c.key).where(results.c.key.in_(keys), results.c.is_good)).scalars())
+    known = vouched(connection, keys)
     for found, positions in job_queries.succeed_equal(connection, [identifier], sorted(known)).items() if known else ():
         changes.add(found, "succeeded", positions)
     first = {row.key: row for row in reversed(rows) if row.key not in known}
