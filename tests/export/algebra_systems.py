@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 import subprocess
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -43,9 +44,14 @@ def values(function: Function) -> dict[str, float]:
     return {**found, **POINT} if set(POINT) == set(found) - {"t"} else found
 
 
-def given(function: Function) -> list[str]:
+def double(x: float) -> str:
+    """Of Maxima, this one exactly, however decimals are read there."""
+    return f"float{rational(x)}"
+
+
+def given(function: Function, number: Callable[[float], str] = rational) -> list[str]:
     known = values(function)
-    columns = {s: [rational(known[n]) for n in function.vector(s).names] for s in function.arguments}
+    columns = {s: [number(known[n]) for n in function.vector(s).names] for s in function.arguments}
     return [column[0] if s == "t" else f"[{', '.join(column)}]" for s, column in columns.items()]
 
 
@@ -60,12 +66,16 @@ def split_numbers(text: str, function: Function) -> dict[str, Any]:
     return found
 
 
-def numbers_in_maxima(exported: Exported, path: Path) -> list[dict[str, Any]]:
-    """The outputs of every function of an exported file at :func:`values`."""
+def numbers_in_maxima(
+    exported: Exported, path: Path, number: Callable[[float], str] = rational
+) -> list[dict[str, Any]]:
+    """The outputs of every function of an exported file at :func:`values`: of rational arguments by exact arithmetic,
+    sines of them being symbols, which takes large models a minute, or of doubles (``number=double``).
+    """
     script = f'load("{path.name}")$ fpprintprec: 17$ linel: 100000$ \n'
     script += "plain(x) := if matrixp(x) then plain(args(x)) elseif listp(x) then map(plain, x) else float(x)$\n"
     for function in exported.functions:
-        call = f"{exported.called(function)}({', '.join(given(function))})"
+        call = f"{exported.called(function)}({', '.join(given(function, number))})"
         script += f"print(flatten([plain({call})]))$\n"
     lines = [line for line in maxima(script, path.parent) if line.startswith("[")]
     assert len(lines) == len(exported.functions)

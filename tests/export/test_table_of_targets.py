@@ -23,7 +23,7 @@ from substructures import catalogue
 from substructures.export import Exported, exported_model, interface_of_model, reference
 from substructures.quantities.sources import Sources
 
-from .algebra_systems import numbers_in_maxima
+from .algebra_systems import double, numbers_in_maxima
 from .algebra_systems import values as values_for_algebra
 from .cuda_on_cpu import call as call_cuda
 from .cuda_on_cpu import library
@@ -127,7 +127,8 @@ def by_cuda_on_cpu(exported: Exported, folder: Path) -> dict[str, float]:
 
 def by_casadi(exported: Exported, folder: Path) -> dict[str, float]:
     casadi = pytest.importorskip("casadi", reason="the wheel casadi is not installed")
-    name = shared([folder / f"{exported.name}_casadi.c"], STRICT)._name
+    # not optimised: most of it are Jacobians, which are not called here
+    name = shared([folder / f"{exported.name}_casadi.c"], [*STRICT, "-O0"])._name
 
     def call(function: Any, values: Mapping[str, float]) -> dict[str, Any]:
         found = casadi.external(exported.called(function), name)(*arguments(function, values).values())
@@ -138,7 +139,7 @@ def by_casadi(exported: Exported, folder: Path) -> dict[str, float]:
 
 
 def by_maxima(exported: Exported, folder: Path) -> dict[str, float]:
-    numbers = numbers_in_maxima(exported, folder / f"{exported.name}.mac")
+    numbers = numbers_in_maxima(exported, folder / f"{exported.name}.mac", double)
     pairs = zip(exported.functions, numbers, strict=True)
     return {f.quantity: agree(x, f, values_for_algebra(f), OF_SOLUTIONS) for f, x in pairs}
 

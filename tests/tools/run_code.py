@@ -96,7 +96,7 @@ def load_python(text: str, folder: Path) -> ModuleType:
 def shared(sources: Sequence[Path], flags: Sequence[str] = STRICT, compiler: str = "") -> ctypes.CDLL:
     """A library of C sources."""
     library = sources[0].with_name(f"lib{next(COUNTER)}.so")
-    given = [*flags, "-O1", "-shared", "-fPIC", "-o", str(library), *map(str, sources), "-lm"]
+    given = ["-O1", *flags, "-shared", "-fPIC", "-o", str(library), *map(str, sources), "-lm"]
     subprocess.run([compiler or tool("gcc", "cc"), *given], check=True)
     return ctypes.CDLL(str(library))
 
