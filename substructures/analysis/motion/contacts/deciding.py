@@ -137,7 +137,7 @@ class DecidedContacts(ContactMotion):
 
     def decided(self, t: float, x: Array) -> tuple[Modes, Array]:
         """The modes at a state, and the state after impacts, on the contacts. Raises ArithmeticError."""
-        before, begun = self.modes[:, 0].copy(), self._begun(t, x)
+        before, begun = self.modes[:, 0].copy(), self._begun_slips(t, x)
         self.modes, self._rows, self._made = self.modes.copy(), (b"", NO_ROWS), (b"", None, None)
         self.look(t, x)
         approach = self.velocities(x)[:, 0]
@@ -158,7 +158,7 @@ class DecidedContacts(ContactMotion):
         self.begun = True
         return self.modes, x
 
-    def _begun(self, t: float, x: Array) -> NDArray[np.bool_]:
+    def _begun_slips(self, t: float, x: Array) -> NDArray[np.bool_]:
         """Slips that have begun (k,), and go on, against their friction."""
         starts = self.modes[:, 0] == STARTS
         if not starts.any():
