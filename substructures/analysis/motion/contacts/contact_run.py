@@ -31,8 +31,8 @@ class ContactRun(DryRun):
     pieces: tuple[list[int], list[int], list[int]] = field(default_factory=lambda: ([], [], []))
     piece: NDArray[np.int64] = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
     advice: ClassVar[str] = (
-        "contacts change without end: try the method 'Radau', raise 'max_steps' or 'rest_velocity', or take contacts "
-        "that depend less on each other"
+        "contacts change without end: try 'Radau' if the method was another one, raise 'max_steps' or "
+        "'rest_velocity', or take contacts that depend less on each other"
     )
 
     def add(self, piece: IntegratedMotion, outputs: Array, events: int) -> None:
