@@ -28,8 +28,6 @@ from substructures.array import Array
 MET = 1e-9
 #: facets of a cone, and how often they are turned where Newton's method leads nowhere from there
 FACETS, TURNS = 8, 8
-#: over contacts, from one start to the next
-SWEEPS = 10, 20, 70, 200
 #: so much a contact yields, beside A_NN, and how often what that leaves is taken away
 SOFT, ROUNDS = 1e-8, 30
 #: and how much more on the way there from contacts that hardly know of each other
@@ -128,8 +126,7 @@ def _found(cones: Cones, near: Array) -> Array:
 
 def _starts(cones: Cones, near: Array) -> Iterator[Array]:
     """Forces (k, 3) from which Newton's method may lead on: those that are near; of facets; of contacts that yield less
-    and less, from where they hardly know of each other, as redundant ones that are alike need; of sweeps over contacts
-    one after the other; of other facets.
+    and less, from where they hardly know of each other, as redundant ones that are alike need; of other facets.
     """
     if near.any():
         yield near
@@ -139,25 +136,8 @@ def _starts(cones: Cones, near: Array) -> Iterator[Array]:
     for more in YIELDING:
         p = _on_cones(_softer(cones, more), p)
     yield p
-    p = np.zeros(near.shape)
-    for count in SWEEPS:
-        p = _swept(cones, p, count)
-        yield p
     for turn in others:
         yield _pressed(cones, turn)
-
-
-def _swept(cones: Cones, p: Array, count: int) -> Array:
-    """p after so many sweeps over contacts, each of which gets the forces that its own velocities ask for (projected
-    Gauss-Seidel: M. Jean, Comput. Methods Appl. Mech. Engrg. 177, 1999)."""
-    p, yields = p.copy(), [max(np.linalg.norm(cones.A[i, :, i], 2), LEAST) for i in range(len(p))]
-    for _ in range(count):
-        for i, most in enumerate(cones.friction.tolist()):
-            y = p[i] - (np.einsum("ajb,jb->a", cones.A[i], p) + cones.b[i]) / yields[i]
-            y_T = np.where(cones.tangents[i], y[1:], 0.0)
-            p[i, 0] = max(0.0, y[0])
-            p[i, 1:] = y_T * min(1.0, most * p[i, 0] / max(float(np.linalg.norm(y_T)), LEAST))
-    return p
 
 
 def _on_cones(cones: Cones, p: Array) -> Array:

@@ -146,11 +146,13 @@ class DecidedContacts(ContactMotion):
             x = self.land(t, x, touching, None)
             if (approach < -self.approach)[touching].any():
                 x = self._hit(t, x, np.flatnonzero(touching))
-            closed = touching & (np.abs(self.velocities(x)[:, 0]) <= self.approach)
+            v = self.velocities(x)
+            closed = touching & (np.abs(v[:, 0]) <= self.approach)
+            slow = closed & (np.linalg.norm(np.where(self.tangents, v[:, 1:], 0.0), axis=1) <= self.approach)
             self.modes[touching] = OPEN
             if closed.any():
-                x, slips = self._rested(t, x, closed, begun)
-                self._hold(t, x, np.flatnonzero(closed), slips[closed])
+                x = self.land(t, x, closed, slow & ~begun)
+                self._hold(t, x, np.flatnonzero(closed), ~slow[closed])
         slow = (self.gap <= TOUCHING) & (self.velocities(x)[:, 0] <= self.rest)
         self.slow = np.where(slow, SLOW, 0.0)
         if self.begun:
@@ -166,23 +168,6 @@ class DecidedContacts(ContactMotion):
         self.evaluate(t, x)
         self.look(t, x)
         return np.asarray(starts & ((self.force * self.velocities(x))[:, 1:].sum(axis=1) < 0))
-
-    def _rested(
-        self, t: float, x: Array, closed: NDArray[np.bool_], begun: NDArray[np.bool_]
-    ) -> tuple[Array, NDArray[np.bool_]]:
-        """The state with those of the ``closed`` contacts at rest that are slow, by themselves or since they depend on
-        others that are, but for slips that have ``begun``; and which slip (k,)."""
-        still = np.zeros_like(closed)
-        while True:
-            v = np.where(self.tangents, self.velocities(x)[:, 1:], 0.0)
-            slow = closed & (np.linalg.norm(v, axis=1) <= self.approach)
-            more = slow & ~still & ~begun
-            if still.any() and not more.any():
-                return x, closed & ~slow
-            still |= more
-            x = self.land(t, x, closed, still)
-            if not more.any():
-                return x, closed & ~slow
 
     def _touching(self, approach: Array) -> NDArray[np.bool_]:
         """Contacts at their planes that act (k,); others begin or end to pass there."""
