@@ -137,7 +137,7 @@ class DecidedContacts(ContactMotion):
 
     def decided(self, t: float, x: Array) -> tuple[Modes, Array]:
         """The modes at a state, and the state after impacts, on the contacts. Raises ArithmeticError."""
-        before, begun = self.modes[:, 0].copy(), self._begun_slips(t, x)
+        before, going = self.modes[:, 0].copy(), self._slips_going_on(t, x)
         self.modes, self._rows, self._made = self.modes.copy(), (b"", NO_ROWS), (b"", None, None)
         self.look(t, x)
         approach = self.velocities(x)[:, 0]
@@ -151,17 +151,17 @@ class DecidedContacts(ContactMotion):
             slow = closed & (np.linalg.norm(np.where(self.tangents, v[:, 1:], 0.0), axis=1) <= self.approach)
             self.modes[touching] = OPEN
             if closed.any():
-                x = self.land(t, x, closed, slow & ~begun)
+                x = self.land(t, x, closed, slow & ~going)
                 self._hold(t, x, np.flatnonzero(closed), ~slow[closed])
-        slow = (self.gap <= TOUCHING) & (self.velocities(x)[:, 0] <= self.rest)
-        self.slow = np.where(slow, SLOW, 0.0)
+        opens = (self.gap <= TOUCHING) & (self.velocities(x)[:, 0] <= self.rest)
+        self.slow = np.where(opens, SLOW, 0.0)
         if self.begun:
             self._tell(t, x, before)
         self.begun = True
         return self.modes, x
 
-    def _begun_slips(self, t: float, x: Array) -> NDArray[np.bool_]:
-        """Slips that have begun (k,), and go on, against their friction."""
+    def _slips_going_on(self, t: float, x: Array) -> NDArray[np.bool_]:
+        """Slips that have begun (k,), and go on, against their friction: v_T . lambda_T < 0."""
         starts = self.modes[:, 0] == STARTS
         if not starts.any():
             return starts
